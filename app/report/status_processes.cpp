@@ -39,11 +39,9 @@ void add_processes(web::MetricsText& out, std::span<const SandboxReport> reports
 
 void add_process_problems(Problems& out, std::span<const SandboxReport> reports) {
   for (const SandboxReport& report : reports) {
-    if (report.program != "cellmirror-dds" || report.state != SandboxState::restarting) continue;
-    out.push_back(
-        {"process", fmt::format("{} ({}) {}: its robots and topics have no data until it runs again; it starts again "
-                                "by itself, for the {}. time; look for a sender of malformed DDS messages",
-                                report.program, report.subject, report.last_exit, report.restarts)});
+    if (report.consequence.empty() || report.state != SandboxState::restarting) continue;
+    out.push_back({"process", fmt::format("{} ({}) {}: {}; it restarts by itself (restart {})", report.program,
+                                          report.subject, report.last_exit, report.consequence, report.restarts)});
   }
 }
 

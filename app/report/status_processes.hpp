@@ -12,7 +12,7 @@ namespace cellmirror::app {
 
 [[nodiscard]] nlohmann::json processes_json(std::span<const SandboxReport> reports);
 void add_processes(web::MetricsText& out, std::span<const SandboxReport> reports);
-// Of those of DDS that do not run now; the connection to an MQTT broker reports its own problem.
+// Adds a problem for each process that is being restarted and has a consequence.
 void add_process_problems(Problems& out, std::span<const SandboxReport> reports);
 
 }  // namespace cellmirror::app

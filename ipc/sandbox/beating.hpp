@@ -1,4 +1,4 @@
-// Signs of life of a confined process while its thread is in a call of a library that may take long.
+// Signs of life of a confined process during a long call of a library.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,7 @@
 
 namespace cellmirror {
 
-// Beats from a thread of its own, as long as it exists.
+// Beats from a thread of its own while it exists.
 class Beating {
  public:
   explicit Beating(Channel& channel)

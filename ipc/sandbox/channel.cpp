@@ -40,7 +40,7 @@ SharedMapping map(int memory, std::size_t size) {
 
 }  // namespace
 
-// The owner writes all but the last three before the child starts, and never reads the rest again.
+// The owner writes the first four before the child starts and does not read them again; the child writes the others.
 struct Channel::Header {
   std::uint64_t magic = kMagic;
   std::uint64_t longest = 0;
@@ -93,7 +93,7 @@ Result<Channel::Ends> Channel::make(const ChannelConfig& config) {
   if (!memory.valid()) return no_channel("memfd_create");
   const std::size_t size = total_bytes(config);
   if (ftruncate(memory.get(), static_cast<off_t>(size)) != 0) return no_channel("ftruncate");
-  // Memory that the child made shorter would end its owner with SIGBUS.
+  // If the child could shorten the memory, an access of the owner would raise SIGBUS.
   if (fcntl(memory.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) return no_channel("fcntl");
   SharedMapping mapping = map(memory.get(), size);
   if (mapping.bytes().empty()) return no_channel("mmap");
@@ -127,7 +127,7 @@ bool Channel::send(std::span<const std::byte> head, std::span<const std::byte> b
   const RingResult result = out_.write(head, body);
   if (result == RingResult::damaged) shared_->damaged.store(true, std::memory_order_relaxed);
   if (result != RingResult::done) return false;
-  // A full socket has woken the other side already.
+  // If the socket is full, the other side has been woken already.
   if (out_.reader_sleeps()) ::send(socket_.get(), &kWake, 1, MSG_DONTWAIT | MSG_NOSIGNAL);
   return true;
 }

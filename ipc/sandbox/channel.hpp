@@ -1,6 +1,6 @@
-// The connection between a process of ours and a confined one: messages both ways through shared memory, and a socket
-// by which each wakes the other and notices the other's end. The owner's side never waits for the confined process and
-// checks all that it reads from the memory.
+// A channel between cellmirror (the owner) and a confined process (the child). Two rings in shared memory carry the
+// messages. A socket wakes a sleeping side and shows when the other process has ended. The owner never blocks on the
+// child, and it checks every count and length that it reads from the memory.
 #pragma once
 
 #include <poll.h>
@@ -23,12 +23,12 @@
 namespace cellmirror {
 
 struct ChannelConfig {
-  std::size_t to_child_bytes = 1U << 20U;    // messages that wait; a power of two
+  std::size_t to_child_bytes = 1U << 20U;    // capacity of the ring; a power of two
   std::size_t to_owner_bytes = 1U << 20U;    // likewise
-  std::size_t longest_message = 64U << 10U;  // both ways; less than either of the above
+  std::size_t longest_message = 64U << 10U;  // bytes, in both directions; has to fit both rings
 };
 
-// The descriptors that a confined process is started with.
+// Descriptors of the child when it starts.
 inline constexpr int kChildSocket = 0;
 inline constexpr int kChildMemory = 3;
 
@@ -48,41 +48,42 @@ class SharedMapping {
   std::size_t size_ = 0;
 };
 
-// One side. send() by any thread, all else by one.
+// One side of the channel. Any thread may call send(); one thread calls everything else.
 class Channel {
  public:
-  // The owner's side, and what the child is given: its end of the socket and the memory.
+  // The owner's side, and the two descriptors for the child.
   struct Ends;
   [[nodiscard]] static Result<Ends> make(const ChannelConfig& config);
-  // The child's side, of the descriptors that it was started with. Fails where these are not ours.
+  // The child's side, from kChildSocket and kChildMemory. Fails if cellmirror did not start this process.
   [[nodiscard]] static Result<Channel> attach();
 
-  // A message that is `head` and then `body`. Does not wait. False: there is no room, it is too long, or the other side
-  // has damaged the memory (damaged()).
+  // Sends the message `head` + `body` without blocking. Returns false if the ring is full, the message is too long, or
+  // the other side has damaged the memory (damaged()).
   bool send(std::span<const std::byte> head, std::span<const std::byte> body = {});
-  // The oldest message, in place of what `out` had.
+  // Replaces the content of `out` by the oldest message.
   RingResult receive(std::vector<std::byte>& out);
   [[nodiscard]] bool damaged() const { return shared_->damaged.load(std::memory_order_relaxed); }
 
-  // Sleeps until there is a message, one of `also` (at most kMostAlso) is ready as poll() has it, the other side has
-  // ended, or `timeout`.
+  // Sleeps until a message arrives, a descriptor in `also` (at most kMostAlso) is ready as for poll(), the other
+  // process ends, or `timeout` has passed.
   static constexpr std::size_t kMostAlso = 3;
   void wait(Nanoseconds timeout, std::span<pollfd> also = {});
-  // Since the last wait(): it ended without a message. For the owner, who counts the wakes of a child that lies.
+  // True if wait() has seen the end of the other process.
   [[nodiscard]] bool ended() const { return ended_; }
-  // Bytes by which the other side woke this one in the last wait().
+  // Number of wake-ups that the other side sent before the last wait() returned. The owner uses it to detect a child
+  // that wakes it without messages.
   [[nodiscard]] std::size_t wakes() const { return wakes_; }
 
-  // The child says what it has given up, before it reads bytes of strangers.
+  // The child reports the restrictions that are in force, before it reads bytes from a network.
   void set_confinement(const ConfinementOutcome& outcome);
   [[nodiscard]] ConfinementOutcome confinement() const;
-  // The child says that it is alive; the owner reads how often.
+  // The child counts a sign of life; the owner reads the count.
   void beat();
   [[nodiscard]] std::uint64_t beats() const;
 
  private:
   struct Header;
-  // What must not move with the object.
+  // Members that cannot move with the object.
   struct Shared {
     std::mutex send_mutex;
     std::atomic<bool> damaged{false};

@@ -20,7 +20,7 @@ namespace cellmirror {
 
 namespace {
 
-// What the child does between its start and the program: the arguments of posix_spawn().
+// Arguments of posix_spawn(): the steps between the start of the process and its program.
 class Beginning {
  public:
   Beginning() {
@@ -118,7 +118,7 @@ Result<StartedReader> start_reader(const std::filesystem::path& program) {
 
 Result<ChildProcess> start_on_channel(const std::filesystem::path& program, const std::string& subject,
                                       const Descriptor& socket, const Descriptor& memory) {
-  // The order counts where a descriptor of ours has the number of one of theirs: the socket's may be kChildMemory.
+  // The actions run in this order: a socket whose number is kChildMemory would be replaced before it is used.
   const Descriptor high_socket(fcntl(socket.get(), F_DUPFD_CLOEXEC, kChildMemory + 1));
   if (!high_socket.valid()) return std::unexpected(not_started(program, errno));
   Beginning beginning;
@@ -133,7 +133,12 @@ Result<ChildProcess> start_on_channel(const std::filesystem::path& program, cons
   return ChildProcess(id);
 }
 
-Result<void> check_reader_program(const std::filesystem::path& program) {
+std::string signal_text(int signal) {
+  const char* known = sigabbrev_np(signal);
+  return known != nullptr ? fmt::format("{} (SIG{})", signal, known) : std::to_string(signal);
+}
+
+Result<void> check_program(const std::filesystem::path& program) {
   if (access(program.c_str(), X_OK) != 0) return std::unexpected(not_started(program, errno));
   return {};
 }

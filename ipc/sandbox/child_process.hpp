@@ -1,4 +1,4 @@
-// Starts a program of ours that is confined. Any thread but the loop's.
+// Starts programs of cellmirror that confine themselves. Any thread except the loop.
 #pragma once
 
 #include <sys/types.h>
@@ -26,7 +26,7 @@ class ChildProcess {
   // Its status as waitpid() gives it; none if another call has collected it. A process that is already ending keeps its
   // status: the kernel ignores signals to it.
   std::optional<int> end();
-  // Its status if it has ended by itself, which is collected, or if it was stopped by a signal. Does not wait.
+  // Status of a process that has ended by itself (and is collected now) or that a signal has stopped. Does not block.
   std::optional<int> changed();
 
  private:
@@ -38,20 +38,23 @@ struct StartedReader {
   Descriptor socket;  // ours; closing it is the end of the child's input
 };
 
-// With a socket as its standard input and output. Its signals, priority and descriptors are not those of this process.
-// An error is part of a sentence.
+// Starts a reader of one file, with a socket as its standard input and output. It inherits neither signal settings nor
+// priority nor other descriptors. The text of an error is part of a sentence.
 [[nodiscard]] Result<StartedReader> start_reader(const std::filesystem::path& program);
 
-// With `socket` and `memory` as the descriptors of a channel (ipc/sandbox/channel.hpp), and `subject` as its argument,
-// for people who look at lists of processes.
+// Starts a program with `socket` and `memory` as the descriptors of a channel (ipc/sandbox/channel.hpp). `subject` is
+// its only argument, so that lists of processes show it.
 [[nodiscard]] Result<ChildProcess> start_on_channel(const std::filesystem::path& program, const std::string& subject,
                                                     const Descriptor& socket, const Descriptor& memory);
 
-// Why it could not be started, without starting it.
-[[nodiscard]] Result<void> check_reader_program(const std::filesystem::path& program);
+// "6 (SIGABRT)".
+[[nodiscard]] std::string signal_text(int signal);
 
-// Where it is installed: ../libexec/cellmirror/ as seen from the folder of the running program; else that folder
-// itself, where ours are built.
+// Fails with the reason if the program could not be started; does not start it.
+[[nodiscard]] Result<void> check_program(const std::filesystem::path& program);
+
+// Path of a program: in ../libexec/cellmirror/, seen from the folder of the running program, if it is installed there;
+// else in that folder, as in a build.
 [[nodiscard]] std::filesystem::path program_beside_this(std::string_view name);
 
 }  // namespace cellmirror

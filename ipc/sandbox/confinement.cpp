@@ -51,7 +51,7 @@ void limit(__rlimit_resource resource, rlim_t most, rlim_t beyond = 0) {
   setrlimit(resource, &both);
 }
 
-// Where memory runs out the kernel ends this process first.
+// If the machine runs out of memory, the kernel ends this process before others.
 void be_ended_first() {
   const Descriptor file(open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC));
   if (!file.valid()) return;
@@ -69,8 +69,8 @@ void drop_common_rights() {
 
 // --- system calls ---------------------------------------------------------------------------------------------------
 
-// A program for the kernel's filter: a list of permitted calls, some with a condition on an argument. Others fail with
-// EPERM: a call that is harmless and merely new in a later C library does not end the process.
+// Builds a seccomp filter: a list of permitted calls, some with a condition on an argument. All others fail with EPERM
+// instead of ending the process, since a later C library may try a harmless new call first.
 class SystemCallFilter {
  public:
   SystemCallFilter() {
@@ -85,7 +85,7 @@ class SystemCallFilter {
       add(BPF_STMT(kReturn, SECCOMP_RET_ALLOW));
     }
   }
-  // Only if the low half of the argument, after `mask`, is one of the values.
+  // Permits the call if the low 32 bits of the argument, masked by `mask`, equal one of the values.
   void allow_if(int call, std::size_t argument, std::uint32_t mask, std::span<const std::uint32_t> values) {
     add(BPF_JUMP(kIfEqual, static_cast<std::uint32_t>(call), 0, static_cast<std::uint8_t>(3 + 2 * values.size())));
     add(BPF_STMT(kLoad, static_cast<std::uint32_t>(offsetof(seccomp_data, args) + argument * sizeof(std::uint64_t))));
@@ -96,7 +96,7 @@ class SystemCallFilter {
     }
     add(BPF_STMT(kReturn, SECCOMP_RET_ERRNO | kNotPermitted));
   }
-  // As if the kernel did not know the call, so that the C library uses the one before.
+  // Lets the call fail with ENOSYS, so that the C library falls back to an older one.
   void hide(int call) {
     add(BPF_JUMP(kIfEqual, static_cast<std::uint32_t>(call), 0, 1));
     add(BPF_STMT(kReturn, SECCOMP_RET_ERRNO | kUnknownCall));
@@ -107,7 +107,7 @@ class SystemCallFilter {
       add(BPF_STMT(kReturn, SECCOMP_RET_ERRNO | kNotPermitted));
     }
   }
-  // For the calling thread and those that it starts, or for all threads of the process. False: the kernel refuses it.
+  // Applies to the calling thread and its new threads, or to all threads. Returns false if the kernel refuses it.
   bool install(bool all_others_allowed, bool all_threads) {
     add(BPF_STMT(kReturn, all_others_allowed ? SECCOMP_RET_ALLOW : SECCOMP_RET_ERRNO | kNotPermitted));
     const sock_fprog filter{static_cast<unsigned short>(program_.size()), program_.data()};
@@ -132,7 +132,7 @@ constexpr std::array kReading{
     __NR_mprotect,     __NR_madvise,   __NR_futex, __NR_rt_sigreturn, __NR_rt_sigprocmask, __NR_clock_gettime,
     __NR_gettimeofday, __NR_getrandom, __NR_exit,  __NR_exit_group};
 
-// What threads, sockets and timers take, and what tells a process about itself.
+// System calls for threads, sockets and timers, and those by which a process queries its own state.
 constexpr std::array kNetworking{
     __NR_readv,
     __NR_writev,
@@ -201,7 +201,7 @@ constexpr std::array kNetworking{
 #endif
 };
 
-// Only to read: confine_to_network() leaves no file that may be written.
+// These calls can only read: confine_to_network() leaves no writable file.
 constexpr std::array kOpening{
     __NR_openat, __NR_newfstatat, __NR_readlinkat, __NR_faccessat, __NR_faccessat2,
     __NR_statx,  __NR_getdents64, __NR_getcwd,     __NR_pread64,
@@ -217,13 +217,13 @@ bool allow_network_calls(bool tcp) {
   filter.allow(kNetworking);
   filter.allow(kOpening);
   if (tcp) filter.allow(std::array{__NR_connect});
-  // Names of interfaces and of hosts come by netlink and by datagrams.
+  // The C library resolves interfaces by netlink and host names by datagrams.
   filter.allow_if(__NR_socket, 0, kAll, std::array<std::uint32_t, 3>{AF_INET, AF_INET6, AF_NETLINK});
-  // Threads, no processes. The arguments of clone3 are in memory, which a filter does not see.
+  // New threads are permitted, new processes are not. A filter cannot see the arguments of clone3.
   filter.hide(__NR_clone3);
   filter.allow_if(__NR_clone, 0, CLONE_THREAD, std::array<std::uint32_t, 1>{CLONE_THREAD});
   filter.allow_if(__NR_prctl, 0, kAll, std::array<std::uint32_t, 2>{PR_SET_NAME, PR_GET_NAME});
-  // abort() shall end it with its own signal, and no other process.
+  // abort() sends a signal to its own process; signals to other processes stay forbidden.
   filter.allow_if(__NR_tgkill, 0, kAll, std::array{static_cast<std::uint32_t>(getpid())});
   filter.allow_if(__NR_prlimit64, 0, kAll, std::array<std::uint32_t, 1>{0});
   return filter.install(false, false);
@@ -234,8 +234,8 @@ bool allow_network_calls(bool tcp) {
 // linux/landlock.h of Linux 6.12, of which Debian 12 has the first member only.
 struct LandlockRules {
   std::uint64_t files = 0;
-  std::uint64_t ports = 0;   // from version 4 of the interface on
-  std::uint64_t scopes = 0;  // from version 6 on
+  std::uint64_t ports = 0;   // since version 4 of the interface
+  std::uint64_t scopes = 0;  // since version 6
 };
 constexpr std::uint64_t kBindTcp = 1U << 0U;
 constexpr std::uint64_t kConnectTcp = 1U << 1U;
@@ -244,7 +244,7 @@ constexpr std::uint64_t kScopes = 3;  // abstract UNIX sockets, signals
 constexpr std::uint64_t kRead = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
 constexpr std::uint64_t kFirstVersionRights = (LANDLOCK_ACCESS_FS_MAKE_SYM << 1U) - 1;
 
-// What the C library and OpenSSL read: names of hosts, time zones, shared libraries, certificates.
+// Files of the C library and of OpenSSL: host names, time zones, shared libraries, certificates.
 constexpr std::array kSystemFiles{"/etc/ld.so.cache",
                                   "/etc/passwd",
                                   "/etc/localtime",
@@ -274,7 +274,7 @@ void permit_reading(int rules, const char* path) {
   permitted.parent_fd = file.get();
   permitted.allowed_access = kRead;
   if (syscall(__NR_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &permitted, 0) == 0) return;
-  permitted.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE;  // it is no folder
+  permitted.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE;  // for a file; the rights of a folder are refused there
   syscall(__NR_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &permitted, 0);
 }
 

@@ -1,6 +1,6 @@
-// What a program that reads bytes of strangers for the gateway takes from itself, so that a damaged file or a hostile
-// datagram can do no more than end it. Called by that program. Linux; what a kernel does not have is left out. With
-// sanitizers memory, new descriptors and system calls stay free: their run time needs them.
+// Restrictions that a program applies to itself before it reads a stranger's file or datagram, so that a flaw in a
+// library can at worst end that program. Linux; a restriction that the kernel lacks is left out and reported. Builds
+// with sanitizers limit neither memory nor descriptors nor system calls, since the sanitizers' run time needs them.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace cellmirror {
 
-// The exit status of a program that ran out of the memory that it may have.
+// Exit status of a program that has used up its memory limit.
 inline constexpr int kOutOfMemoryStatus = 71;
 
 struct Confinement {
@@ -17,29 +17,28 @@ struct Confinement {
   std::uint64_t processor_seconds = 60;  // then it ends with SIGXCPU
 };
 
-// For a program that reads one file from descriptor 0. Closes all descriptors but 0, 1 and 2; bounds memory, processor
-// time, files; forbids all system calls but those that reading, writing and memory take. The process ends with the
-// thread that started it.
+// Confines a program that reads one file from descriptor 0. Closes all descriptors except 0, 1 and 2, limits memory,
+// processor time and files, and permits only the system calls for reading, writing and memory. The kernel ends the
+// process together with the thread that started it.
 void confine_this_process(const Confinement& limits);
 
 struct NetworkConfinement {
   std::uint64_t address_space_bytes = std::uint64_t{1} << 30U;
-  std::span<const std::string> readable = {};  // files and folders; beside them those of the C library and of TLS
-  bool tcp = false;                            // it may connect to a TCP port; otherwise UDP only
+  std::span<const std::string> readable = {};  // files and folders, in addition to those of the C library and of TLS
+  bool tcp = false;                            // true: it may connect to TCP ports; false: UDP only
 };
 
-// What of the below is in force. A kernel, or a service manager, may refuse it.
+// Restrictions that are in force. A kernel or a service manager may refuse them.
 struct ConfinementOutcome {
   bool system_calls = false;
   bool files = false;
 };
 
-// For a program that speaks to a network, which keeps descriptors 0 to 2 and kChildMemory: in two steps, each before
-// what it guards against.
-// 1. Before its library starts: no new privileges, bounds on memory and files, no file but those that are named, no
-//    program started, no signal to another process.
+// Confines a program that communicates over a network, in two steps. It keeps descriptors 0 to kChildMemory.
+// First step, before its library starts: no new privileges, a memory limit, no writable file, only the named readable
+// files, no new processes or programs, no signals to other processes.
 [[nodiscard]] ConfinementOutcome confine_to_network(const NetworkConfinement& limits);
-// 2. When the library has opened its files: it opens no other. All threads.
+// Second step, after the library has read its files: no thread of the process can open a file any more.
 void forbid_opening_files();
 
 }  // namespace cellmirror

@@ -1,11 +1,12 @@
-// Messages between a process of ours and a confined one: a message lists its fields once, for writing and for reading.
+// Encoding of the messages on a channel. A message lists its fields once, for writing and for reading.
 //
 //   struct Created {
 //     std::uint32_t id = 0;
 //     void fields(auto& bytes) { bytes(id); }
 //   };
 //
-// Both processes are of one build on one machine: numbers are in its byte order. A reader takes any bytes.
+// Both processes come from one build and run on one machine, so numbers have its byte order. The reader accepts
+// arbitrary bytes.
 #pragma once
 
 #include <array>
@@ -69,7 +70,7 @@ class MessageWriter {
   std::vector<std::byte>& out_;
 };
 
-// After the first field that is not there, or that is longer than it may be, nothing is read any more.
+// Stops at the first field that is missing or too long; good() is false from then on.
 class MessageReader {
  public:
   explicit MessageReader(std::span<const std::byte> bytes) : left_(bytes) {}
@@ -133,7 +134,7 @@ class MessageReader {
   bool good_ = true;
 };
 
-// A message is one of the variant's: its number there, then its fields.
+// Replaces the content of `out` by the index of the message in the variant and its fields.
 template <class... Messages>
 void encode_variant(std::variant<Messages...>& message, std::vector<std::byte>& out) {
   out.clear();
@@ -143,14 +144,14 @@ void encode_variant(std::variant<Messages...>& message, std::vector<std::byte>& 
   std::visit([&bytes](auto& one) { one.fields(bytes); }, message);
 }
 
-// A message as it came. `rest`: what follows its fields, of a message that declares kCarriesBytes.
+// A decoded message. `rest`: the bytes behind its fields, for a message that declares kCarriesBytes.
 template <class Variant>
 struct ReceivedMessage {
   Variant message;
   std::span<const std::byte> rest;
 };
 
-// False where it is none of them. `rest`: what follows the fields.
+// Returns false if the bytes are not one of these messages. `rest`: the bytes behind its fields.
 template <class... Messages>
 [[nodiscard]] bool decode_variant(std::span<const std::byte> from, std::variant<Messages...>& message,
                                   std::span<const std::byte>& rest) {
@@ -166,7 +167,7 @@ template <class... Messages>
   return bytes.good();
 }
 
-// None: it is none of the variant's messages, or bytes are left over where none may follow.
+// Returns nothing if the bytes are not one of the variant's messages, or if bytes follow a message that carries none.
 template <class Variant>
 [[nodiscard]] std::optional<ReceivedMessage<Variant>> decode_message(std::span<const std::byte> bytes) {
   ReceivedMessage<Variant> received;

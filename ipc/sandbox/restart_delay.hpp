@@ -1,4 +1,4 @@
-// How long a process that has ended is not started again. Pure.
+// Delay before a process that has ended is started again. Pure.
 #pragma once
 
 #include <algorithm>
@@ -7,17 +7,17 @@
 
 namespace cellmirror {
 
-// A few restarts come at once, so that a fault that passes costs less than two seconds; under a continuing attack there
-// is one per kEach.
+// The first kAtOnce restarts follow at once, so that a passing fault costs less than two seconds. Under a continuing
+// attack there is one restart per kEach.
 class RestartDelay {
  public:
   static constexpr int kAtOnce = 5;
   static constexpr Nanoseconds kEach{2'000'000'000};
   static constexpr Nanoseconds kShortest{50'000'000};
 
-  // `now`: when the process ended. From then on to the next start.
+  // The delay after an end at `now`.
   [[nodiscard]] Nanoseconds after_end(Timestamp now) {
-    // The time up to which restarts are spent, each for kEach; it is never further back than kAtOnce of them.
+    // Each restart uses up kEach of time; at most kAtOnce of them are saved up.
     spent_until_ = std::max(spent_until_, now - kEach * kAtOnce) + kEach;
     return std::max(spent_until_ - now, kShortest);
   }

@@ -13,10 +13,10 @@ namespace cellmirror {
 
 namespace {
 
-constexpr int kMessagesPerRound = 4096;  // between two looks at the process and at stop()
-// Where messages come closer than this to each other, they are collected for kCollect at a time, and the thread sleeps
-// until it is woken only when there was none: a wake for each would cost more than the messages.
-constexpr Nanoseconds kClose{500'000};
+constexpr int kMessagesPerRound = 4096;  // between two checks of the process and of stop()
+// If two wake-ups are less than kBusyGap apart, the thread collects messages every kCollect and asks for a wake-up only
+// after an empty round: a wake-up for each message would cost more processor time than the message.
+constexpr Nanoseconds kBusyGap{500'000};
 constexpr timespec kCollect{0, 400'000};
 
 }  // namespace
@@ -25,7 +25,7 @@ Sandbox::Sandbox(SandboxConfig config, SandboxEvents events, std::string thread_
     : config_(std::move(config)),
       events_(std::move(events)),
       thread_name_(std::move(thread_name)),
-      record_(SandboxRecord::make(config_.program, config_.subject, config_.memory_bytes)) {}
+      record_(SandboxRecord::make(config_.program, config_.subject, config_.memory_bytes, config_.consequence)) {}
 
 Sandbox::~Sandbox() { stop(); }
 
@@ -102,18 +102,18 @@ void Sandbox::pause_until(Timestamp when) {
 
 void Sandbox::serve() {
   while (!stop_.load()) {
-    process_->wait(SandboxProcess::kLookEvery, wake_.descriptor());
+    process_->wait(SandboxProcess::kCheckEvery, wake_.descriptor());
     const Timestamp now = clock_.now();
-    const bool close = now - last_woken_ < kClose;
+    const bool busy = now - last_woken_ < kBusyGap;
     last_woken_ = now;
     bool more = false;
     do {
-      if (close) nanosleep(&kCollect, nullptr);
+      if (busy) nanosleep(&kCollect, nullptr);
       std::optional<std::string> why;
       if (!take_messages(more)) why = process_->end("sent a message that it may not send");
-      if (!why) why = process_->look(clock_.now());
+      if (!why) why = process_->check(clock_.now());
       if (why) return note_end(*why);
-    } while (close && more && !stop_.load());
+    } while (busy && more && !stop_.load());
   }
   say_farewell();
   record_->stopped();

@@ -1,5 +1,9 @@
-// A confined process that is always there: started, watched, and replaced when it ends, at a bounded rate, by a thread
-// of its own. Not for the loop.
+// Keeps one confined process running: starts it, watches it, and replaces it at a bounded rate when it fails. Uses a
+// thread of its own; not for the loop.
+//
+//   Sandbox sandbox({.program = "cellmirror-dds", ...}, {.started = ..., .received = ...}, "dds");
+//   if (auto started = sandbox.start(); !started) return started;
+//   sandbox.send(message);
 #pragma once
 
 #include <atomic>
@@ -23,16 +27,15 @@
 
 namespace cellmirror {
 
-// What is done with it; all by the sandbox's thread, but for stop() and start().
+// Callbacks, all from the sandbox's thread.
 struct SandboxEvents {
-  // A process was started and knows nothing yet: what it needs is sent here.
+  // A new process has started. The callback sends it everything that it needs.
   std::function<void()> started;
-  // False: the message is not one that it may send. It is ended and replaced.
+  // Returns false for a message that the process may not send; the process is then replaced.
   std::function<bool(std::span<const std::byte> message)> received;
-  // It has ended; `why` as SandboxProcess::look() says it.
+  // The process has ended for the reason `why` (SandboxProcess::check()).
   std::function<void(const std::string& why)> ended;
-  // stop() was called: what makes the process end by itself is sent here. It is ended where it takes longer than
-  // Sandbox::kFarewell.
+  // stop() was called. The callback asks the process to end; after Sandbox::kFarewell it is killed.
   std::function<void()> stopping;
 };
 
@@ -46,23 +49,23 @@ class Sandbox {
   Sandbox(const Sandbox&) = delete;
   Sandbox& operator=(const Sandbox&) = delete;
 
-  // Fails where the program cannot be started at all. Once.
+  // Fails if the program cannot be started at all. To be called once.
   [[nodiscard]] Result<void> start();
-  // Ends the process and the thread; no event after it returns. Not called from an event.
+  // Ends the process and the thread. No callback runs after it returns. Must not be called from a callback.
   void stop();
 
-  // A message that is `head` and then `body`. Does not wait; false where there is no process, or no room because the
-  // process does not read. Any thread.
+  // Sends the message `head` + `body` without blocking. Returns false if there is no process, or if the ring is full
+  // because the process does not read. Any thread.
   bool send(std::span<const std::byte> head, std::span<const std::byte> body = {});
   [[nodiscard]] SandboxReport report() const { return record_->report(); }
-  // Why there is no process now, as a sentence about it; empty while there is one. Any thread.
+  // "cellmirror-dds was ended by signal 6 (SIGABRT)" while there is no process; empty while one runs. Any thread.
   [[nodiscard]] std::string outage() const;
 
  private:
   void run();
   void serve();
   void say_farewell();
-  // False: one that may not come. `some`: there were some.
+  // Returns false after a message that the process may not send. `some`: at least one message was there.
   [[nodiscard]] bool take_messages(bool& some);
   [[nodiscard]] bool launch();
   void pause_until(Timestamp when);
@@ -75,12 +78,12 @@ class Sandbox {
   WakeSignal wake_;
   std::atomic<bool> stop_{false};
   std::shared_ptr<SandboxRecord> record_;
-  RestartDelay delay_;              // the thread's, as what follows
+  RestartDelay delay_;              // used by the thread only, as are the next three
   std::vector<std::byte> message_;  // reused
   Timestamp last_woken_;
   std::optional<Error> first_failure_;
-  mutable std::mutex mutex_;                 // of what follows
-  std::shared_ptr<SandboxProcess> process_;  // null: there is none now
+  mutable std::mutex mutex_;                 // guards the next two
+  std::shared_ptr<SandboxProcess> process_;  // null while there is none
   std::string outage_;
   std::mutex start_mutex_;
   std::condition_variable first_try_;

@@ -21,31 +21,26 @@ namespace cellmirror {
 namespace {
 
 constexpr std::uint64_t kMega = 1ULL << 20U;
-// Sanitizers keep what was freed, and a shadow of all memory.
+// Freed blocks in quarantine and the shadow memory of sanitizers count as resident memory.
 #if defined(CELLMIRROR_SANITIZED)
 constexpr std::uint64_t kOfSanitizers = 4;
 #else
 constexpr std::uint64_t kOfSanitizers = 1;
 #endif
 
-std::string signal_name(int signal) {
-  const char* known = sigabbrev_np(signal);
-  return known != nullptr ? fmt::format("{} (SIG{})", signal, known) : std::to_string(signal);
-}
-
 std::string ran_out_of_memory(std::uint64_t limit) {
   return fmt::format("reached its memory limit of {} MB", limit / kMega);
 }
 
-// Of a status as waitpid() gives it.
+// `status`: from waitpid().
 std::string in_words(int status, std::uint64_t memory_limit) {
-  if (WIFSTOPPED(status)) return fmt::format("was stopped by signal {}", signal_name(WSTOPSIG(status)));
-  if (WIFSIGNALED(status)) return fmt::format("was ended by signal {}", signal_name(WTERMSIG(status)));
+  if (WIFSTOPPED(status)) return fmt::format("was stopped by signal {}", signal_text(WSTOPSIG(status)));
+  if (WIFSIGNALED(status)) return fmt::format("was ended by signal {}", signal_text(WTERMSIG(status)));
   if (WEXITSTATUS(status) == kOutOfMemoryStatus) return ran_out_of_memory(memory_limit);
   return fmt::format("ended with status {}", WEXITSTATUS(status));
 }
 
-// Resident memory; 0 where it is not known.
+// Resident memory; 0 if it is not known.
 std::uint64_t resident_bytes(pid_t pid) {
   const Descriptor file(open(fmt::format("/proc/{}/statm", pid).c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.valid()) return 0;
@@ -56,7 +51,7 @@ std::uint64_t resident_bytes(pid_t pid) {
   return std::strtoull(second, nullptr, 10) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-// Of all its threads; 0 where it is not known (proc(5), /proc/pid/stat).
+// Processor time of all threads, s; 0 if it is not known. Source: proc(5), /proc/pid/stat.
 double processor_seconds(pid_t pid) {
   const Descriptor file(open(fmt::format("/proc/{}/stat", pid).c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.valid()) return 0;
@@ -100,12 +95,12 @@ bool SandboxProcess::receive(std::vector<std::byte>& out) {
 
 void SandboxProcess::wait(Nanoseconds timeout, int also) {
   pollfd other{also, POLLIN, 0};
-  channel_.wait(std::min(timeout, kLookEvery), std::span(&other, also < 0 ? 0 : 1));
+  channel_.wait(std::min(timeout, kCheckEvery), std::span(&other, also < 0 ? 0 : 1));
   wakes_ += channel_.wakes();
-  if (channel_.ended()) next_look_ = {};
+  if (channel_.ended()) next_check_ = {};
 }
 
-std::optional<std::string> SandboxProcess::floods(Timestamp now) {
+std::optional<std::string> SandboxProcess::flood(Timestamp now) {
   constexpr Nanoseconds kOver{1'000'000'000};
   if (!counted_since_.known()) counted_since_ = now;
   const Nanoseconds since = now - counted_since_;
@@ -118,12 +113,12 @@ std::optional<std::string> SandboxProcess::floods(Timestamp now) {
     return fmt::format("flooded cellmirror with {:.0f} messages per second", messages);
   if (wakes > messages + static_cast<double>(kMostIdleWakesPerSecond))
     return fmt::format("woke cellmirror {:.0f} times per second for nothing", wakes);
-  return loops(messages);
+  return fruitless(messages);
 }
 
-std::optional<std::string> SandboxProcess::loops(double messages_per_second) {
-  constexpr double kRests = 0.3;     // of a processor; on a busy machine a loop has no more than its share
-  constexpr double kQuiet = 1000.0;  // messages; a busy network brings more
+std::optional<std::string> SandboxProcess::fruitless(double messages_per_second) {
+  constexpr double kRests = 0.3;     // share of a processor; on a busy machine an endless loop gets no more
+  constexpr double kQuiet = 1000.0;  // messages per second; a busy network brings more
   const double taken = processor_seconds(child_.id());
   const double used = taken - std::exchange(processor_s_, taken);
   fruitless_s_ = used > kRests && messages_per_second < kQuiet ? fruitless_s_ + used : 0;
@@ -131,31 +126,31 @@ std::optional<std::string> SandboxProcess::loops(double messages_per_second) {
   return fmt::format("computed for {:.0f} s without a result", fruitless_s_);
 }
 
-std::optional<std::string> SandboxProcess::found(Timestamp now) {
+std::optional<std::string> SandboxProcess::fault(Timestamp now) {
   if (channel_.damaged()) return "damaged the memory that it shares with cellmirror";
   if (const auto status = child_.changed()) return in_words(*status, memory_limit_);
-  if (channel_.ended()) return why_it_left();
+  if (channel_.ended()) return reason_of_exit();
   const std::uint64_t beats = channel_.beats();
-  silent_looks_ = beats == std::exchange(last_beats_, beats) ? silent_looks_ + 1 : 0;
-  if (silent_looks_ > kMostSilentLooks)
-    return fmt::format("did not answer for {:.1f} s", seconds(kLookEvery * silent_looks_));
-  if (auto flood = floods(now)) return flood;
+  silent_checks_ = beats == std::exchange(last_beats_, beats) ? silent_checks_ + 1 : 0;
+  if (silent_checks_ > kMostSilentChecks)
+    return fmt::format("did not answer for {:.1f} s", seconds(kCheckEvery * silent_checks_));
+  if (auto flooding = flood(now)) return flooding;
   const std::uint64_t memory = resident_bytes(child_.id());
   record_->measured(memory, channel_.confinement());
   if (memory > memory_limit_ * kOfSanitizers) return ran_out_of_memory(memory_limit_);
   return std::nullopt;
 }
 
-std::optional<std::string> SandboxProcess::look(Timestamp now) {
-  if (next_look_.known() && now < next_look_) return std::nullopt;
-  next_look_ = now + kLookEvery;
-  auto why = found(now);
+std::optional<std::string> SandboxProcess::check(Timestamp now) {
+  if (next_check_.known() && now < next_check_) return std::nullopt;
+  next_check_ = now + kCheckEvery;
+  auto why = fault(now);
   if (why) return end(*why);
   return std::nullopt;
 }
 
-// An ending process closes its descriptors before its status can be had.
-std::string SandboxProcess::why_it_left() {
+// A process that ends closes its descriptors before waitpid() returns its status.
+std::string SandboxProcess::reason_of_exit() {
   constexpr int kTries = 20;
   constexpr timespec kPause{0, 5'000'000};
   for (int i = 0; i < kTries; ++i) {

@@ -11,7 +11,7 @@ struct Registry {
   std::vector<std::weak_ptr<SandboxRecord>> records;
 };
 
-// Never destroyed: records of objects with static lifetime may go later than this file's.
+// Never destroyed, since records of objects with static lifetime may outlive the objects of this file.
 Registry& registry() {
   static auto* const registry = new Registry;
   return *registry;
@@ -34,11 +34,12 @@ const char* words(SandboxState state) {
 }
 
 std::shared_ptr<SandboxRecord> SandboxRecord::make(std::string program, std::string subject,
-                                                   std::uint64_t memory_limit_bytes) {
+                                                   std::uint64_t memory_limit_bytes, std::string consequence) {
   SandboxReport report;
   report.program = std::move(program);
   report.subject = std::move(subject);
   report.memory_limit_bytes = memory_limit_bytes;
+  report.consequence = std::move(consequence);
   std::shared_ptr<SandboxRecord> made(new SandboxRecord(std::move(report)));
   const std::scoped_lock lock(registry().mutex);
   std::erase_if(registry().records, [](const auto& record) { return record.expired(); });

@@ -1,5 +1,4 @@
-// What people are shown of the confined processes of this process: their memory, how often they were started again, and
-// why the last one ended.
+// State of the confined processes for status and metrics: memory, restarts, and the reason of the last exit.
 #pragma once
 
 #include <sys/types.h>
@@ -18,30 +17,32 @@ enum class SandboxState : std::uint8_t { starting, running, restarting, stopped 
 [[nodiscard]] const char* words(SandboxState state);
 
 struct SandboxReport {
-  std::string program;  // its name in lists of processes
-  std::string subject;  // what it does for this process, e.g. "DDS domain 0 on 127.0.0.1"
+  std::string program;      // name in lists of processes
+  std::string subject;      // e.g. "DDS domain 0 on 127.0.0.1"; unique among those of one program
+  std::string consequence;  // of its absence, for problems; empty: not a problem of its own
   SandboxState state = SandboxState::starting;
-  pid_t pid = 0;                   // 0: there is none now
-  std::uint64_t memory_bytes = 0;  // resident; of the last look, at most about a second ago
+  pid_t pid = 0;                   // 0 while there is none
+  std::uint64_t memory_bytes = 0;  // resident, at the last check
   std::uint64_t memory_limit_bytes = 0;
-  ConfinementOutcome confinement;  // of the one that runs
-  std::uint64_t restarts = 0;      // because one ended that was not to end
-  std::string last_exit;           // why the last one ended by itself or was ended; empty: none has
+  ConfinementOutcome confinement;  // of the running process
+  std::uint64_t restarts = 0;      // after exits that were not requested
+  std::string last_exit;           // reason of the last exit that was not requested; empty: there was none
 };
 
-// One process and those that take its place, as they are reported. Any thread.
+// The report on one process and its replacements. Any thread.
 class SandboxRecord {
  public:
-  // Listed by sandbox_reports() from now on, until it goes.
+  // sandbox_reports() lists the record until it is destroyed.
   [[nodiscard]] static std::shared_ptr<SandboxRecord> make(std::string program, std::string subject,
-                                                           std::uint64_t memory_limit_bytes);
+                                                           std::uint64_t memory_limit_bytes,
+                                                           std::string consequence = {});
 
   [[nodiscard]] SandboxReport report() const;
   void started(pid_t pid);
   void measured(std::uint64_t memory_bytes, const ConfinementOutcome& confinement);
-  // `again`: another one takes its place.
+  // `again`: another process replaces it.
   void ended(const std::string& why, bool again);
-  // It was ended on purpose.
+  // The process has ended on request.
   void stopped();
 
  private:
@@ -51,7 +52,7 @@ class SandboxRecord {
   SandboxReport report_;
 };
 
-// In the order in which they were made.
+// Reports in the order in which the records were made.
 [[nodiscard]] std::vector<SandboxReport> sandbox_reports();
 
 }  // namespace cellmirror

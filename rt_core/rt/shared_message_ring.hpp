@@ -1,5 +1,5 @@
-// Messages of any length from one process to another, through memory that both have mapped. The other process is not
-// trusted: whatever it writes there, and whenever, a side of the ring stays within the memory and its loops end.
+// A ring for messages of any length from one process to another, in memory that both have mapped. The other process is
+// not trusted: whatever it writes there and whenever, this side stays within the memory and its loops end.
 //
 // Memory order. `written` is stored with release after the bytes of a message and loaded with acquire before they are
 // read; `read` likewise in the other direction. A reader that is about to sleep sets `waits` and then looks at
@@ -20,7 +20,7 @@
 
 namespace cellmirror {
 
-// At the beginning of the memory. All zero: an empty ring.
+// The start of the memory. An all-zero header is an empty ring.
 struct SharedRingHeader {
   static constexpr std::size_t kLine = 64;  // so that the two sides do not take cache lines from each other
 
@@ -37,12 +37,12 @@ namespace shared_ring {
 
 inline constexpr std::size_t kHead = sizeof(std::uint64_t);  // the length, in front of each message
 
-// What a message takes: messages begin at multiples of eight bytes.
+// Bytes that a message occupies: messages begin at multiples of eight bytes.
 [[nodiscard]] constexpr std::size_t occupied(std::size_t length) { return kHead + (length + 7) / 8 * 8; }
 
 }  // namespace shared_ring
 
-// Memory for a ring whose longest sequence of unread messages has `capacity` bytes (a power of two).
+// Memory for a ring of `capacity` bytes (a power of two).
 [[nodiscard]] constexpr std::size_t shared_ring_bytes(std::size_t capacity) {
   return sizeof(SharedRingHeader) + capacity;
 }
@@ -84,7 +84,7 @@ class SharedRingWriter final : public SharedRingSide {
  public:
   using SharedRingSide::SharedRingSide;
 
-  // The message is `head` and then `body`. None, and nothing has changed: there is no room.
+  // Writes the message `head` + `body`. Returns none, without any change, if there is no room.
   RingResult write(std::span<const std::byte> head, std::span<const std::byte> body = {}) {
     const std::uint64_t read = header().read.load(std::memory_order_acquire);
     if (read < last_read_ || read > written_) return RingResult::damaged;
@@ -99,14 +99,14 @@ class SharedRingWriter final : public SharedRingSide {
     header().written.store(written_, std::memory_order_seq_cst);
     return RingResult::done;
   }
-  // True once for each sleep of the reader: it has to be woken.
+  // Returns true once for each sleep of the reader, which has to be woken then.
   [[nodiscard]] bool reader_sleeps() {
     return header().waits.load(std::memory_order_seq_cst) != 0 &&
            header().waits.exchange(0, std::memory_order_seq_cst) != 0;
   }
 
  private:
-  // What this side knows for itself: the shared words are the other side's to change.
+  // Own copies: the other side can change the shared words.
   std::uint64_t written_ = 0;
   std::uint64_t last_read_ = 0;
 };
@@ -116,8 +116,8 @@ class SharedRingReader final : public SharedRingSide {
  public:
   using SharedRingSide::SharedRingSide;
 
-  // The oldest message, of at most `longest` bytes, in place of what `out` had. Damaged: a length or a count that
-  // cannot be; nothing is read any more.
+  // Replaces the content of `out` by the oldest message, of at most `longest` bytes. Returns damaged for an impossible
+  // length or count.
   RingResult read(std::vector<std::byte>& out, std::size_t longest) {
     const std::uint64_t written = header().written.load(std::memory_order_acquire);
     if (written == read_) return RingResult::none;
@@ -132,14 +132,14 @@ class SharedRingReader final : public SharedRingSide {
     header().read.store(read_, std::memory_order_release);
     return RingResult::done;
   }
-  // Before it sleeps. False: a message is there.
+  // To be called before the reader sleeps. Returns false if a message has arrived.
   [[nodiscard]] bool prepare_to_sleep() {
     header().waits.store(1, std::memory_order_seq_cst);
     if (header().written.load(std::memory_order_seq_cst) == read_) return true;
     awake();
     return false;
   }
-  // After a sleep: the writer need not wake it.
+  // To be called after a sleep: the writer need not wake the reader any more.
   void awake() { header().waits.store(0, std::memory_order_relaxed); }
 
  private:

@@ -1,4 +1,4 @@
-// What a process of the DDS library that was taken over may send, and what such a process is sent.
+// Messages in both directions between the gateway and a confined process, from arbitrary bytes.
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto bytes = std::as_bytes(std::span(data, size));
   std::vector<std::byte> again;
   if (auto event = decode_event(bytes)) {
-    // What was understood is what is sent: the same bytes again, but for truth values and what follows.
+    // A decoded message encodes to as many bytes, and decodes again.
     encode(event->message, again);
     CELLMIRROR_EXPECTS(again.size() + event->rest.size() == size);
     CELLMIRROR_EXPECTS(decode_event(again).has_value());

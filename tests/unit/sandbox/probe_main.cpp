@@ -37,7 +37,7 @@ int tcp_socket_connects() {
   return connect(tcp, reinterpret_cast<sockaddr*>(&to), sizeof to);
 }
 
-// What a process that was taken over would try.
+// Attempts of a process that an attacker controls.
 std::string attempt(std::string_view what) {
   if (what == "write a file") return outcome(open("/tmp/cellmirror-sandbox-probe", O_WRONLY | O_CREAT, 0600) >= 0);
   if (what == "read a file") return outcome(open("/etc/hostname", O_RDONLY) >= 0 || open("/etc/group", O_RDONLY) >= 0);

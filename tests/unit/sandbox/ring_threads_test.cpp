@@ -10,7 +10,7 @@
 namespace cellmirror {
 namespace {
 
-// What a Channel does with its socket, with an atomic in its place.
+// The wake-ups of a Channel, with an atomic in place of its socket.
 TEST(SharedMessageRingThreads, NoMessageIsLeftBehindWhileItsReaderSleeps) {
   constexpr std::uint64_t kMessages = 200'000;
   constexpr std::size_t kCapacity = 1024;
