@@ -21,7 +21,7 @@ struct ReceivedSummary {
   std::size_t bytes = 0;
 };
 
-// By the thread of the participant's link, one call at a time; must not wait.
+// The thread of the participant's link calls it, one call at a time. It must not block.
 class SummaryInbox {
  public:
   virtual ~SummaryInbox() = default;

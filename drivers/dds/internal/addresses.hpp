@@ -1,4 +1,4 @@
-// Domains and addresses that the user gives, checked before the DDS library sees them.
+// Checks of domains and addresses from the cell file.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 namespace cellmirror::dds {
 
 [[nodiscard]] Result<void> check_domain(int domain);
-// Fails where it is not an IPv4 address of this machine.
+// Fails if it is not an IPv4 address of this machine.
 [[nodiscard]] Result<void> check_address(const std::string& address);
 
 }  // namespace cellmirror::dds

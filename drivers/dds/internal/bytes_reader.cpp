@@ -7,8 +7,8 @@ namespace cellmirror::dds {
 
 namespace {
 
-constexpr std::size_t kMostWriters = 4096;  // that are known by name
-// The time of a sample is the process's word. It can make a value older, up to this, and never newer.
+constexpr std::size_t kMostWriters = 4096;  // matched at the same time
+// Limit of the age that the process claims for a sample. A false claim can make a value look older, never newer.
 constexpr Nanoseconds kMostAge{10'000'000'000};
 
 }  // namespace
@@ -48,8 +48,7 @@ void BytesReader::matched(const PeerMatched& event) {
     if (writers_.size() < kMostWriters) writers_.insert(event.peer);
     return;
   }
-  writers_.erase(event.peer);
-  if (gone_) gone_(event.peer);
+  if (writers_.erase(event.peer) > 0 && gone_) gone_(event.peer);
 }
 
 void BytesReader::lost() {

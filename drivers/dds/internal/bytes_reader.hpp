@@ -28,9 +28,10 @@ struct ReceivedSample {
 
 class BytesReader final : private EndpointEvents {
  public:
-  // Called by the link's thread, one at a time, and no more when the reader is gone.
+  // The link's thread calls it, one call at a time, and not after the reader is destroyed.
   using Receive = std::function<void(const ReceivedSample& sample)>;
-  // A writer that was matched was closed, or its lease has ended, or the process of the DDS library has. As Receive.
+  // A matched writer was closed, its lease has expired, or the process of the DDS library has ended. Called like
+  // Receive.
   using Gone = std::function<void(const Guid& writer)>;
   [[nodiscard]] static Result<std::unique_ptr<BytesReader>> make(const std::shared_ptr<Participant>& participant,
                                                                  const EndpointConfig& config, Receive receive,
@@ -42,9 +43,9 @@ class BytesReader final : private EndpointEvents {
   // Any thread; each value on its own.
   [[nodiscard]] int matched_writers() const { return matched_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t samples() const { return samples_.load(std::memory_order_relaxed); }  // of any content
-  // Writers seen that do not offer what the reader asks for.
+  // Number of writers whose offer does not match the request of the reader.
   [[nodiscard]] std::uint64_t incompatible() const { return incompatible_.load(std::memory_order_relaxed); }
-  // Why nothing can come now; empty: it can.
+  // DomainLink::outage().
   [[nodiscard]] std::string outage() const { return participant_->link().outage(); }
 
  private:

@@ -59,12 +59,10 @@ void BytesWriter::on_reader(OnReader call) {
 void BytesWriter::matched(const PeerMatched& event) {
   matched_.store(std::max(event.count, 0), std::memory_order_relaxed);
   const std::scoped_lock lock(mutex_);
-  if (!event.matched) {
-    readers_.erase(event.peer);
-  } else if (readers_.size() < kMostReaders) {
-    readers_.insert(event.peer);
-  }
-  if (call_) call_(event.peer, event.matched);
+  // The callback learns only of readers within the bound, since the process may announce any number of them.
+  if (event.matched && readers_.size() >= kMostReaders) return;
+  const bool changed = event.matched ? readers_.insert(event.peer).second : readers_.erase(event.peer) > 0;
+  if (changed && call_) call_(event.peer, event.matched);
 }
 
 void BytesWriter::dropped(std::uint64_t total) { dropped_.store(dropped_before_ + total, std::memory_order_relaxed); }

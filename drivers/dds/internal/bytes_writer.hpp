@@ -30,12 +30,12 @@ class BytesWriter final : private EndpointEvents {
 
   // The next sample's bytes, to be filled in; keeps its capacity.
   [[nodiscard]] std::vector<std::byte>& payload() { return payload_; }
-  // Does not wait. False where there is no process of the DDS library now, or where it does not take the sample.
+  // Does not block. Returns false if there is no process of the DDS library, or if it does not read.
   bool write();
   // The same, as the reply to a request: with its identity in the inline QoS.
   bool write_reply(const SampleName& request);
   [[nodiscard]] int matched_readers() const { return matched_.load(std::memory_order_relaxed); }
-  // Samples that the library refused, or that it overwrote before a reliable reader had confirmed them.
+  // Number of samples that the library refused or overwrote before a reliable reader had confirmed them.
   [[nodiscard]] std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
   // Called for each reader that is matched, now or later, and for each that is no longer: by the link's thread, one at
   // a time; it may write. An empty one ends that: none runs when this returns.

@@ -24,11 +24,16 @@ using namespace std::chrono_literals;
 constexpr auto kOpenWithin = 5s;
 constexpr auto kAddWithin = 2s;
 
-// Why the library, which gives no reason, may have made no participant.
+// Possible causes of a refused participant, for which the library gives no reason.
 std::string remedy_for(const DdsSecurityConfig& security) {
   if (!security.enabled()) return "look whether the UDP ports of the domain are free (7400 + 250 * domain and above)";
   return "look at the files of [dds.security]: the key belongs to the certificate, the CAs have signed the others, "
          "the subject in the permissions is that of the certificate, the dates are valid (docs/dds.md)";
+}
+
+std::string subject_of(int domain, const std::string& address, const DdsSecurityConfig& security) {
+  return fmt::format("DDS domain {} on {}{}", domain, address,
+                     security.enabled() ? fmt::format(" as {}", security.certificate) : std::string());
 }
 
 ProcessSetting<RosPresence>& presence_setting() {
@@ -47,7 +52,7 @@ void set_ros_presence(const RosPresence& presence) { presence_setting().set(pres
 
 void set_network(const DdsNetworkConfig& network) { network_setting().set(network); }
 
-// Which nodes there are, for programs of ROS 2. All under the link's mutex.
+// The writer of the list of nodes for programs of ROS 2. Guarded by the link's mutex.
 class DomainLink::GraphWriter final : public EndpointEvents {
  public:
   explicit GraphWriter(DomainLink& link) : link_(link) {}
@@ -63,7 +68,10 @@ DomainLink::DomainLink(OpenParticipant wanted, RosPresence presence, std::string
     : wanted_(std::move(wanted)), presence_(std::move(presence)) {
   graph_.node = presence_.node_name;
   sandbox_ = std::make_unique<Sandbox>(
-      SandboxConfig{.program = "cellmirror-dds", .subject = std::move(subject), .channel = kDdsChannel},
+      SandboxConfig{.program = "cellmirror-dds",
+                    .subject = std::move(subject),
+                    .consequence = "its robots and topics have no data",
+                    .channel = kDdsChannel},
       SandboxEvents{.started = [this] { on_started(); },
                     .received = [this](std::span<const std::byte> message) { return on_message(message); },
                     .ended = [this](const std::string&) { on_ended(); },
@@ -84,7 +92,7 @@ Result<std::shared_ptr<DomainLink>> DomainLink::shared(int domain, const std::st
   if (auto existing = entry.lock()) return existing;
   std::shared_ptr<DomainLink> made(new DomainLink(
       {.domain = domain, .address = interface_address, .security = security, .network = network_setting().get()},
-      presence_setting().get(), fmt::format("DDS domain {} on {}", domain, interface_address)));
+      presence_setting().get(), subject_of(domain, interface_address, security)));
   if (auto opened = made->open(); !opened) return std::unexpected(opened.error());
   entry = made;
   return made;
@@ -231,12 +239,13 @@ bool DomainLink::take(const SamplesDropped& event, std::span<const std::byte> /*
 }
 
 bool DomainLink::take(const LibraryLog& event, std::span<const std::byte> /*rest*/) {
-  log_text(event.warning ? LogLevel::warning : LogLevel::info, "dds.library " + printable(event.category, 40),
-           printable(event.text, 400));
+  // One kind for the rate limit: the process chooses the category.
+  log_text(event.warning ? LogLevel::warning : LogLevel::info, "dds.library",
+           fmt::format("{}: {}", printable(event.category, 40), printable(event.text, 400)));
   return true;
 }
 
-// Under the mutex.
+// The caller holds the mutex.
 void DomainLink::publish_graph() {
   if (!graph_writer_) return;
   const Endpoint* const writer = endpoint(graph_writer_->id);

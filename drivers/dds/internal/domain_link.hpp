@@ -1,5 +1,5 @@
-// The gateway's DDS participants: each runs in a process of its own (cellmirror-dds), which is replaced when it ends,
-// with all its readers and writers. Here is what they mean; there, the DDS library and bytes.
+// DDS participants of this process. Each runs the DDS library in a confined process (cellmirror-dds). When that process
+// fails it is replaced, and all readers and writers are made again.
 #pragma once
 
 #include <atomic>
@@ -23,8 +23,7 @@
 
 namespace cellmirror::dds {
 
-// The events of a reader or writer: called by the link's thread, one at a time, and no more after
-// remove().
+// Events of a reader or writer. The link's thread calls them one at a time, and not after remove().
 class EndpointEvents {
  public:
   virtual ~EndpointEvents() = default;
@@ -32,17 +31,17 @@ class EndpointEvents {
   virtual void matched(const PeerMatched& /*event*/) {}
   virtual void incompatible(std::uint64_t /*total*/) {}
   virtual void dropped(std::uint64_t /*total*/) {}
-  // A process has it that did not have it before: a writer sends what late readers are to get.
+  // A new process has made the endpoint. A writer with samples for late readers sends these again.
   virtual void added() {}
-  // The process has ended: no peer is matched any more.
+  // The process has ended, so no peer is matched any more.
   virtual void lost() {}
 };
 
-// One for each domain, interface and security in use; lives as long as it is referenced. Any thread.
+// One object for each combination of domain, interface and security; it lives as long as it is referenced. Any thread.
 class DomainLink {
  public:
-  // Waits until the participant is open, a few seconds at most. Where the process ends meanwhile it is tried again by
-  // itself, and this succeeds.
+  // Waits up to 5 s until the participant is open. Succeeds as well if the process fails meanwhile, since the link then
+  // tries again by itself.
   [[nodiscard]] static Result<std::shared_ptr<DomainLink>> shared(int domain, const std::string& interface_address,
                                                                   const DdsSecurityConfig& security);
   ~DomainLink();
@@ -52,13 +51,13 @@ class DomainLink {
   [[nodiscard]] const RosPresence& presence() const { return presence_; }
   [[nodiscard]] const ServiceClients& clients() const { return clients_; }
 
-  // The endpoint's id. Waits until the library has it; where there is no process now, it gets it later. `events`
-  // outlives it until remove().
+  // Returns the id of the new endpoint. Waits up to 2 s for the library; a process that is away makes the endpoint when
+  // it is back. `events` has to exist until remove().
   [[nodiscard]] Result<std::uint32_t> add(AddEndpoint wanted, EndpointEvents& events);
   void remove(std::uint32_t id);
-  // A sample of a writer of ours. False where there is no process, or no room because it does not read.
+  // Writes a sample. Returns false if there is no process, or if it does not read.
   bool write(const WriteSample& sample, std::span<const std::byte> payload);
-  // Why nothing comes or goes now; empty: it does.
+  // Sandbox::outage().
   [[nodiscard]] std::string outage() const { return sandbox_->outage(); }
 
  private:
@@ -77,7 +76,7 @@ class DomainLink {
   [[nodiscard]] bool on_message(std::span<const std::byte> message);
   void on_ended();
 
-  // By what on_message() decodes. False: it may not come.
+  // Handlers of the decoded events. They return false for an event that the process may not send now.
   bool take(const ParticipantOpened& event, std::span<const std::byte> rest);
   bool take(const ParticipantRefused& event, std::span<const std::byte> rest);
   bool take(const EndpointAdded& event, std::span<const std::byte> rest);
@@ -88,7 +87,7 @@ class DomainLink {
   bool take(const PeerAnnounced& event, std::span<const std::byte> rest);
   bool take(const SamplesDropped& event, std::span<const std::byte> rest);
   bool take(const LibraryLog& event, std::span<const std::byte> rest);
-  // None: it was removed while the message was on its way.
+  // Null for an endpoint that was removed while the message was on its way.
   [[nodiscard]] Endpoint* endpoint(std::uint32_t id);
   void publish_graph();
 

@@ -18,7 +18,7 @@ struct TopicStatus {
   int publishers = 0;              // matched now
   std::uint64_t messages = 0;      // of any content
   std::uint64_t incompatible = 0;  // publishers seen that do not offer what we ask for
-  std::string outage;              // why nothing can come now; empty: it can
+  std::string outage;              // DomainLink::outage()
 };
 
 // Samples are decoded and routed on the link's thread. The mutex is among that thread and add() and remove() of the

@@ -1,4 +1,4 @@
-// A participant as readers and writers use it: one partition of a DomainLink.
+// One partition of a DomainLink, for its readers and writers.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ class Participant {
                                                                    const DdsSecurityConfig& security,
                                                                    const std::string& partition = {});
 
-  // As DomainLink::add().
+  // See DomainLink::add().
   [[nodiscard]] Result<std::uint32_t> add_reader(const EndpointConfig& config, EndpointEvents& events);
   [[nodiscard]] Result<std::uint32_t> add_writer(const EndpointConfig& config, EndpointEvents& events);
   [[nodiscard]] DomainLink& link() { return *link_; }

@@ -1,4 +1,4 @@
-// Which readers and writers of other participants are those of clients of services (service_mapping.hpp).
+// Readers and writers of other participants that belong to clients of services (service_mapping.hpp).
 #pragma once
 
 #include <atomic>
@@ -10,13 +10,13 @@
 
 namespace cellmirror::dds {
 
-// Any thread. The link tells it of an endpoint before it tells others that the endpoint is matched.
+// Any thread. The link notes an endpoint here before it reports the endpoint as matched.
 class ServiceClients {
  public:
   // `gone`: the endpoint is no longer there.
   void note(const Guid& endpoint, std::string_view user_data, bool gone);
   void forget_all();
-  // As ClientEndpoints.
+  // See ClientEndpoints.
   [[nodiscard]] bool contains(const Guid& endpoint) const;
   [[nodiscard]] bool reaches(const RequestName& to, std::span<const Guid> readers) const;
 

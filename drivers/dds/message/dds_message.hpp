@@ -1,5 +1,5 @@
-// The messages between cellmirror and cellmirror-dds, the process in which the DDS library runs. Bytes go in and come
-// out: what they mean is known on cellmirror's side alone. Pure.
+// Messages between cellmirror and cellmirror-dds, the process of the DDS library. They carry samples as bytes; only
+// cellmirror decodes these. Pure.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ inline constexpr ChannelConfig kDdsChannel{
 
 // --- to the process -------------------------------------------------------------------------------------------------
 
-// The first message, once: the participant. Paths are absolute.
+// Opens the participant. The first message, sent once. Paths are absolute.
 struct OpenParticipant {
   int domain = 0;
   std::string address;
@@ -45,7 +45,7 @@ struct OpenParticipant {
   }
 };
 
-// A reader or writer of the participant. Its id was not used before.
+// Makes a reader or writer. The id is new.
 struct AddEndpoint {
   std::uint32_t id = 0;
   bool writer = false;
@@ -69,7 +69,7 @@ struct RemoveEndpoint {
   void fields(auto& bytes) { bytes(id); }
 };
 
-// The sample's bytes follow.
+// Writes a sample, whose bytes follow.
 struct WriteSample {
   static constexpr bool kCarriesBytes = true;
 
@@ -81,7 +81,7 @@ struct WriteSample {
   void fields(auto& bytes) { bytes(id, reply, request_guid, request_number); }
 };
 
-// The participant says goodbye to its peers, and the process ends.
+// Closes the participant, so that its peers know at once, and ends the process.
 struct CloseParticipant {
   void fields(auto&) {}
 };
@@ -110,7 +110,7 @@ struct EndpointRefused {
   void fields(auto& bytes) { bytes(id, what); }
 };
 
-// The sample's bytes follow; none where there were more than kMaxPayloadBytes.
+// A received sample, whose bytes follow. A sample of more than kMaxPayloadBytes comes without them.
 struct SampleReceived {
   static constexpr bool kCarriesBytes = true;
 
@@ -125,7 +125,7 @@ struct SampleReceived {
   void fields(auto& bytes) { bytes(id, taken_ns, writer, number, related, received, start); }
 };
 
-// An endpoint of another participant was matched with one of ours, or is no longer.
+// An endpoint of another participant is now matched with the endpoint `id`, or no longer.
 struct PeerMatched {
   std::uint32_t id = 0;
   Guid peer{};
@@ -135,14 +135,14 @@ struct PeerMatched {
   void fields(auto& bytes) { bytes(id, peer, matched, count); }
 };
 
-// Writers were seen that do not offer what a reader of ours asks for.
+// Number of writers whose offer does not match the request of the reader `id`.
 struct PeersIncompatible {
   std::uint32_t id = 0;
   std::uint64_t total = 0;
   void fields(auto& bytes) { bytes(id, total); }
 };
 
-// An endpoint of another participant that announces USER_DATA, or that is gone.
+// An endpoint of another participant announces USER_DATA, or is gone.
 struct PeerAnnounced {
   Guid peer{};
   bool gone = false;
@@ -150,14 +150,14 @@ struct PeerAnnounced {
   void fields(auto& bytes) { bytes(peer, gone, user_data); }
 };
 
-// Samples of a writer that did not reach the library, or that were overwritten before a reader had confirmed them.
+// Number of samples of a writer that the library refused or overwrote before a reader had confirmed them.
 struct SamplesDropped {
   std::uint32_t id = 0;
   std::uint64_t total = 0;
   void fields(auto& bytes) { bytes(id, total); }
 };
 
-// What the library logs.
+// A line of the library's log.
 struct LibraryLog {
   bool warning = false;
   std::string category;
@@ -169,10 +169,10 @@ using DdsRequest = std::variant<OpenParticipant, AddEndpoint, RemoveEndpoint, Wr
 using DdsEvent = std::variant<ParticipantOpened, ParticipantRefused, EndpointAdded, EndpointRefused, SampleReceived,
                               PeerMatched, PeersIncompatible, PeerAnnounced, SamplesDropped, LibraryLog>;
 
-// In place of what `out` had; the bytes of a sample are sent behind it.
+// Replaces the content of `out`. The bytes of a sample are sent behind it.
 void encode(DdsRequest& request, std::vector<std::byte>& out);
 void encode(DdsEvent& event, std::vector<std::byte>& out);
-// None: it is not such a message, or bytes are left over where none may follow.
+// Return nothing if the bytes are not such a message, or if bytes follow a message that carries none.
 [[nodiscard]] std::optional<ReceivedMessage<DdsRequest>> decode_request(std::span<const std::byte> bytes);
 [[nodiscard]] std::optional<ReceivedMessage<DdsEvent>> decode_event(std::span<const std::byte> bytes);
 

@@ -1,4 +1,4 @@
-// A reader and a writer of the DDS library, whose events go to cellmirror.
+// A reader and a writer of the DDS library. Their events are sent to cellmirror.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace cellmirror::dds {
 
-// The library calls it on its own threads.
+// The library calls the private functions on its own threads.
 class ReaderEndpoint final : private eprosima::fastdds::dds::DataReaderListener {
  public:
   ReaderEndpoint(std::uint32_t id, EventSender& sender) : id_(id), sender_(sender) {}
@@ -23,7 +23,7 @@ class ReaderEndpoint final : private eprosima::fastdds::dds::DataReaderListener 
   ReaderEndpoint(const ReaderEndpoint&) = delete;
   ReaderEndpoint& operator=(const ReaderEndpoint&) = delete;
 
-  // False where the library refuses it. The subscriber outlives it.
+  // Returns false if the library refuses the reader. The subscriber has to outlive the object.
   bool open(eprosima::fastdds::dds::Subscriber& subscriber, eprosima::fastdds::dds::Topic& topic,
             const AddEndpoint& wanted);
   [[nodiscard]] Guid guid() const;
@@ -49,7 +49,7 @@ class WriterEndpoint final : private eprosima::fastdds::dds::DataWriterListener 
   WriterEndpoint(const WriterEndpoint&) = delete;
   WriterEndpoint& operator=(const WriterEndpoint&) = delete;
 
-  // As ReaderEndpoint.
+  // See ReaderEndpoint::open().
   bool open(eprosima::fastdds::dds::Publisher& publisher, eprosima::fastdds::dds::Topic& topic,
             const AddEndpoint& wanted, DdsLink link);
   [[nodiscard]] Guid guid() const;

@@ -20,11 +20,13 @@ class EventSender {
   // `channel` outlives it.
   explicit EventSender(Channel& channel) : channel_(channel) {}
 
-  // Waits in a list while there is no room. The process ends where the list is full: cellmirror has stopped reading.
+  // Keeps the event in a list while the ring is full. Ends the process when the list is full, since cellmirror then
+  // does not read any more.
   void send(DdsEvent event);
-  // Waits for room for a moment, which holds up the library as a slow reader does; then it is dropped.
+  // Waits up to 200 ms for room in the ring, which delays the library like a slow reader, and then drops the sample.
+  // The gap in the sequence numbers counts it as lost.
   void send_sample(SampleReceived& sample, std::span<const std::byte> payload);
-  // Sends events that wait.
+  // Sends the events in the list.
   void flush();
 
  private:

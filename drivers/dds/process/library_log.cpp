@@ -15,7 +15,7 @@ constexpr std::size_t kMostText = 400;
 class ToCellmirror final : public eprosima::fastdds::dds::LogConsumer {
  public:
   explicit ToCellmirror(EventSender& sender) : sender_(sender) {}
-  // On the library's log thread.
+  // The library's log thread calls this.
   void Consume(const Log::Entry& entry) override {
     const std::string category = entry.context.category != nullptr ? entry.context.category : "";
     sender_.send(LibraryLog{entry.kind == Log::Kind::Error, category, entry.message.substr(0, kMostText)});

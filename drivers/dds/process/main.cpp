@@ -25,7 +25,7 @@ constexpr int kMostRequests = 1024;                   // between two beats
 constexpr int kArenas = 2;                            // of malloc: each takes 64 MB of addresses
 constexpr std::uint64_t kAddresses = 1536ULL << 20U;  // with the stacks of the library's threads
 
-// False: the participant is to be closed.
+// Returns false if the participant is to be closed.
 bool carry_out(ParticipantHost& host, const ReceivedMessage<DdsRequest>& request) {
   if (const auto* add = std::get_if<AddEndpoint>(&request.message)) host.add(*add);
   if (const auto* gone = std::get_if<RemoveEndpoint>(&request.message)) host.remove(gone->id);
@@ -33,7 +33,7 @@ bool carry_out(ParticipantHost& host, const ReceivedMessage<DdsRequest>& request
   return !std::holds_alternative<CloseParticipant>(request.message);
 }
 
-// What cellmirror sends first.
+// Waits for the first message of cellmirror.
 std::optional<OpenParticipant> wanted_participant(Channel& channel, std::vector<std::byte>& message) {
   while (!channel.ended()) {
     if (channel.receive(message) == RingResult::done) {

@@ -25,7 +25,7 @@ namespace cellmirror::dds {
 class ReaderEndpoint;
 class WriterEndpoint;
 
-// One thread, but for the calls of the library, which are events to `sender`.
+// One thread. The library calls the discovery functions on its own threads; they only send events.
 class ParticipantHost final : private eprosima::fastdds::dds::DomainParticipantListener {
  public:
   explicit ParticipantHost(EventSender& sender);
@@ -33,7 +33,7 @@ class ParticipantHost final : private eprosima::fastdds::dds::DomainParticipantL
   ParticipantHost(const ParticipantHost&) = delete;
   ParticipantHost& operator=(const ParticipantHost&) = delete;
 
-  // Once, first. False where the library refused it, which was reported.
+  // To be called once, first. Returns false if the library refuses the participant; that is reported.
   bool open(const OpenParticipant& wanted);
   void add(const AddEndpoint& wanted);
   void remove(std::uint32_t id);
@@ -48,7 +48,7 @@ class ParticipantHost final : private eprosima::fastdds::dds::DomainParticipantL
                               eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
   void on_subscriber_discovery(eprosima::fastdds::dds::DomainParticipant* participant,
                                eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
-  // An error says why, for the user.
+  // Returns the reason of a refusal, for the user; empty if there was none.
   [[nodiscard]] std::string add_or_say_why(const AddEndpoint& wanted, Guid& guid);
   [[nodiscard]] eprosima::fastdds::dds::Topic* topic(const AddEndpoint& wanted, std::string& why);
   [[nodiscard]] Group& group(const std::string& partition);
@@ -59,7 +59,7 @@ class ParticipantHost final : private eprosima::fastdds::dds::DomainParticipantL
   std::shared_ptr<eprosima::fastdds::dds::DomainParticipantFactory> factory_;  // outlives the participant
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   std::map<std::string, Group> groups_;  // by partition
-  // After the participant in no case: their listeners are the library's until the endpoints are deleted.
+  // To be cleared before the participant is deleted: the library uses their listeners until then.
   std::map<std::uint32_t, std::unique_ptr<ReaderEndpoint>> readers_;
   std::map<std::uint32_t, std::unique_ptr<WriterEndpoint>> writers_;
 };
