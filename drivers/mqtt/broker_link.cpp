@@ -31,7 +31,8 @@ BrokerLink::BrokerLink(MqttConfig config, std::string client_id, Conversation& c
       conversation_(conversation),
       wake_(wake),
       clock_(clock),
-      record_(SandboxRecord::make("cellmirror-mqtt", fmt::format("MQTT broker {}", endpoint()), Session::kMemory)) {}
+      record_(SandboxRecord::make("cellmirror-mqtt", fmt::format("MQTT broker {} as {}", endpoint(), client_id_),
+                                  Session::kMemory)) {}
 
 BrokerLink::~BrokerLink() { stop(); }
 

@@ -61,10 +61,10 @@ class BrokerLink {
  private:
   void run();
   struct Attempt {
-    Nanoseconds connected{0};  // how long it was
-    bool broke_down = false;   // the process of the library did
+    Nanoseconds connected{0};  // duration of the connection
+    bool broke_down = false;   // the process of the library failed
   };
-  // Until the connection is lost, or stop(); the reason.
+  // Runs one connection until it is lost or stop() is called. Returns the reason of its end.
   Error attempt(Attempt& attempt);
   [[nodiscard]] Result<std::unique_ptr<Session>> open();
   [[nodiscard]] Result<void> wait_for_answer(Session& session);

@@ -69,6 +69,7 @@ bool Session::send(MqttRequest request, std::string_view payload) {
   for (int i = 0; i < kTries && !end_; ++i) {
     if (process_->channel().send(bytes_, std::as_bytes(std::span(payload)))) return true;
     if (bytes_.size() + payload.size() > kMqttChannel.longest_message) return false;
+    take_events();  // otherwise each side could wait for the other to read
     nanosleep(&kPause, nullptr);
   }
   return false;
@@ -80,12 +81,14 @@ void Session::subscribe(const std::string& topic) {
 
 Result<int> Session::publish(const Outgoing& message) {
   const int number = last_number_ + 1;
-  if (!send(PublishMessage{number, message.topic, message.qos, message.retain, message.correlation}, message.payload))
+  last_number_ = number;  // a confirmation may come before the call returns
+  if (send(PublishMessage{number, message.topic, message.qos, message.retain, message.correlation}, message.payload))
+    return number;
+  if (bytes_.size() + message.payload.size() > kMqttChannel.longest_message)
     return fail(
-        fmt::format("a message of {} bytes does not reach the process of the library for MQTT", message.bytes()),
-        fmt::format("messages have at most {} bytes", kMqttChannel.longest_message));
-  last_number_ = number;
-  return number;
+        fmt::format("it has {} bytes, but at most {} are possible", message.bytes(), kMqttChannel.longest_message),
+        "divide it");
+  return fail("cellmirror-mqtt does not read messages", "wait until the gateway has replaced the process");
 }
 
 std::vector<Session::Confirmation> Session::take_confirmations() { return std::exchange(confirmations_, {}); }
@@ -97,7 +100,7 @@ void Session::wait(int wake, Nanoseconds timeout) {
   process_->wait(timeout, wake);
   take_events();
   if (end_) return;
-  if (const auto why = process_->look(clock_.now())) {
+  if (const auto why = process_->check(clock_.now())) {
     take_events();  // the reason, if the connection has ended
     if (!end_) break_down(*why);
   }

@@ -1,5 +1,5 @@
-// One connection to a broker, from its beginning to its end, in a process of its own (cellmirror-mqtt). One thread,
-// which outlives it.
+// One connection to a broker, in a confined process of its own (cellmirror-mqtt). One thread, which has to outlive the
+// object.
 #pragma once
 
 #include <cstdint>
@@ -26,11 +26,11 @@ class Session {
 
   struct Confirmation {
     int number = 0;            // that publish() gave
-    std::string refusal = {};  // why it was not taken; empty: it was
+    std::string refusal = {};  // reason of a refusal; empty if the message was taken
     bool by_library = false;   // the refusal is not the broker's
   };
 
-  // Starts the process, which connects. `received` is called by wait(). Fails where the program cannot be started.
+  // Starts the process, which then connects. wait() calls `received`. Fails if the program cannot be started.
   [[nodiscard]] static Result<std::unique_ptr<Session>> make(const MqttConfig& config, const std::string& client_id,
                                                              const std::optional<Credentials>& credentials,
                                                              const Outgoing& will,
@@ -43,9 +43,9 @@ class Session {
   // The broker was found and asked; accepted() tells the answer.
   [[nodiscard]] bool asked() const { return asked_; }
   [[nodiscard]] bool accepted() const { return accepted_ && !end_; }
-  // Why it is over; none: it is not.
+  // The reason of the end of the connection; nothing while it lasts.
   [[nodiscard]] const std::optional<Error>& end() const { return end_; }
-  // It is over because the process ended in another way than by the end of the connection.
+  // True if the connection ended because the process failed.
   [[nodiscard]] bool broke_down() const { return broke_down_; }
 
   void subscribe(const std::string& topic);
@@ -56,7 +56,7 @@ class Session {
   // Since the last call. With QoS 0: written to the socket.
   [[nodiscard]] std::vector<Confirmation> take_confirmations();
 
-  // Takes what has come; waits at most `timeout` for it, or until the descriptor `wake` is readable.
+  // Handles events of the process; waits for them up to `timeout`, or until the descriptor `wake` is readable.
   void wait(int wake, Nanoseconds timeout);
   // Asks the broker to end the connection without publishing the last will.
   void disconnect();
@@ -64,10 +64,10 @@ class Session {
  private:
   Session(std::unique_ptr<SandboxProcess> process, std::shared_ptr<SandboxRecord> record,
           std::function<void(const Incoming&)> received);
-  // Waits for room for a moment. False: the process does not read.
+  // Waits up to 0.5 s for room in the ring. Returns false if there is none, or if the message is too long.
   bool send(MqttRequest request, std::string_view payload = {});
   void take_events();
-  // By what take_events() decodes. False: it may not come.
+  // Handlers of the decoded events. They return false for an event that the process may not send now.
   bool take(const BrokerAsked& event, std::span<const std::byte> rest);
   bool take(const BrokerAccepted& event, std::span<const std::byte> rest);
   bool take(const ConnectionEnded& event, std::span<const std::byte> rest);

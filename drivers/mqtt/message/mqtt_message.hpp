@@ -1,5 +1,5 @@
-// The messages between cellmirror and cellmirror-mqtt, the process in which the library for MQTT runs: one connection
-// to a broker, from its beginning to its end. Pure.
+// Messages between cellmirror and cellmirror-mqtt, the process of the MQTT library. One process handles one connection
+// to a broker. Pure.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ inline constexpr ChannelConfig kMqttChannel{
 
 // --- to the process -------------------------------------------------------------------------------------------------
 
-// The first message, once. Paths are absolute.
+// Connects to the broker. The first message, sent once. Paths are absolute.
 struct ConnectBroker {
   std::string broker;  // name or numeric address
   std::uint16_t port = 1883;
@@ -50,7 +50,7 @@ struct SubscribeTopic {
   void fields(auto& bytes) { bytes(topic); }
 };
 
-// The payload follows.
+// Publishes a message, whose payload follows.
 struct PublishMessage {
   static constexpr bool kCarriesBytes = true;
 
@@ -62,7 +62,7 @@ struct PublishMessage {
   void fields(auto& bytes) { bytes(number, topic, qos, retain, correlation); }
 };
 
-// The connection is ended without the last will, and the process ends.
+// Ends the connection without the last will, and the process.
 struct DisconnectBroker {
   void fields(auto&) {}
 };
@@ -97,7 +97,7 @@ struct MessageConfirmed {
   void fields(auto& bytes) { bytes(number, by_library, refusal); }
 };
 
-// The payload follows.
+// A received message, whose payload follows.
 struct MessageReceived {
   static constexpr bool kCarriesBytes = true;
 
@@ -112,10 +112,10 @@ using MqttRequest = std::variant<ConnectBroker, SubscribeTopic, PublishMessage, 
 using MqttEvent =
     std::variant<BrokerAsked, BrokerAccepted, ConnectionEnded, SubscriptionRefused, MessageConfirmed, MessageReceived>;
 
-// In place of what `out` had; a payload is sent behind it.
+// Replaces the content of `out`. A payload is sent behind it.
 void encode(MqttRequest& request, std::vector<std::byte>& out);
 void encode(MqttEvent& event, std::vector<std::byte>& out);
-// None: it is not such a message, or bytes are left over where none may follow.
+// Return nothing if the bytes are not such a message, or if bytes follow a message that carries none.
 [[nodiscard]] std::optional<ReceivedMessage<MqttRequest>> decode_request(std::span<const std::byte> bytes);
 [[nodiscard]] std::optional<ReceivedMessage<MqttEvent>> decode_event(std::span<const std::byte> bytes);
 

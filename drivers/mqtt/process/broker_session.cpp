@@ -23,7 +23,7 @@ constexpr int kTlsReads = 16;
 constexpr int kSubscriptionQos = 2;  // the publisher's choice counts: 4.3
 constexpr const char* kSystemAuthorities = "/etc/ssl/certs";
 
-// Where a key has a password there is nobody to ask: without this one OpenSSL asks on the terminal.
+// Without this callback OpenSSL would ask for the password of a key on the terminal.
 int no_password(char* /*buffer*/, int /*size*/, int /*write*/, void* /*data*/) { return 0; }
 
 struct Properties {
@@ -160,7 +160,7 @@ struct BrokerSession::Impl {
 
   void read_and_write(short events) {
     if ((events & (POLLIN | POLLERR | POLLHUP)) != 0) {
-      // With TLS several, since more than one packet may have been decrypted already, of which poll() knows nothing.
+      // TLS may have decrypted further packets already, which poll() does not report.
       for (int i = 0; i < (tls ? kTlsReads : 1) && !end; ++i) check(mosquitto_loop_read(client, 1));
     }
     if (!end && mosquitto_want_write(client)) check(mosquitto_loop_write(client, 1));

@@ -23,15 +23,15 @@ class BrokerSession {
     std::function<void(MessageReceived& message, std::span<const std::byte> payload)> received;
   };
 
-  // Fails where a certificate or key cannot be used.
+  // Fails if a certificate or key cannot be used.
   [[nodiscard]] static Result<std::unique_ptr<BrokerSession>> make(const ConnectBroker& wanted, Events events);
   ~BrokerSession();
   BrokerSession(const BrokerSession&) = delete;
   BrokerSession& operator=(const BrokerSession&) = delete;
 
-  // TCP, the beginning of TLS, CONNECT. `host`: where a broker is known to listen. Waits as long as the kernel does.
+  // Opens TCP and TLS and sends CONNECT. A program is known to listen at `host`. Blocks as long as the kernel does.
   [[nodiscard]] Result<void> connect(const std::string& host);
-  // Why it is over; none: it is not.
+  // The reason of the end of the connection; nothing while it lasts.
   [[nodiscard]] const std::optional<Error>& end() const;
 
   void subscribe(const std::string& topic);
@@ -39,10 +39,10 @@ class BrokerSession {
   // Asks the broker to end the connection without publishing the last will.
   void disconnect();
 
-  // What to poll for; negative: there is no connection any more.
+  // The descriptor for poll(); negative after the end of the connection.
   [[nodiscard]] int socket() const;
   [[nodiscard]] bool wants_to_write() const;
-  // `events` as poll() has them. At least each second, for the times of the protocol.
+  // Handles the result of poll(). To be called at least once a second, for the timers of the protocol.
   void read_and_write(short events);
 
  private:

@@ -72,7 +72,7 @@ class Connection {
     session_ = std::move(*session);
     const auto address = answering_address(wanted.broker, wanted.port, kConnectWithin);
     if (!address) return std::unexpected(address.error());
-    // With TLS the library has to know the name, which it compares with the one in the certificate.
+    // TLS needs the name, which the library compares with the certificate.
     return session_->connect(wanted.tls ? wanted.broker : *address);
   }
 
@@ -87,7 +87,7 @@ class Connection {
     }
   }
 
-  // False: the connection is to be ended.
+  // Returns false if the connection is to be ended.
   bool take_requests() {
     for (int i = 0; i < kMostRequests && channel_.receive(message_) == RingResult::done; ++i) {
       const auto request = decode_request(message_);
@@ -109,7 +109,7 @@ class Connection {
     }
   }
 
-  // Waits for room: cellmirror reads within milliseconds, or ends this process.
+  // Waits for room in the ring: cellmirror reads within milliseconds or ends this process.
   void send(MqttEvent event, std::span<const std::byte> payload = {}) {
     encode(event, bytes_);
     constexpr timespec kPause{0, 1'000'000};
