@@ -94,8 +94,7 @@ std::unexpected<Error> why_ended(std::optional<int> status) {
   if (status && WIFSIGNALED(*status)) {
     const int signal = WTERMSIG(*status);
     if (signal == SIGXCPU) return took_too_long("60 s of CPU time");
-    const char* known = sigabbrev_np(signal);
-    const std::string name = known != nullptr ? fmt::format("{} (SIG{})", signal, known) : std::to_string(signal);
+    const std::string name = signal_text(signal);
     if (signal == SIGKILL)
       return fail(
           fmt::format("it cannot be read: its reader was ended with signal {}, as by a system that is out of memory",
@@ -115,8 +114,6 @@ std::unexpected<Error> why_ended(std::optional<int> status) {
 }  // namespace
 
 MeshReader installed_mesh_reader() { return {program_beside_this("cellmirror-mesh-reader")}; }
-
-Result<void> check_mesh_reader(const MeshReader& reader) { return check_reader_program(reader.program); }
 
 Result<ScenePolygons> read_mesh_apart(const MeshRequest& request, const MeshReader& reader) {
   const Steady::time_point until = Steady::now() + reader.longest;

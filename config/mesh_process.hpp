@@ -22,9 +22,6 @@ struct MeshReader {
 // Beside the running program, where it is installed and where it is built.
 [[nodiscard]] MeshReader installed_mesh_reader();
 
-// Why it could not be started, without starting it: for `cellmirror doctor`.
-[[nodiscard]] Result<void> check_mesh_reader(const MeshReader& reader = installed_mesh_reader());
-
 // The result is untrusted: see decode_mesh_answer(). Leaves neither a process nor a descriptor behind. Errors are parts
 // of sentences: "its reader ended with signal 11 (SIGSEGV): the file is damaged".
 [[nodiscard]] Result<ScenePolygons> read_mesh_apart(const MeshRequest& request,

@@ -11,14 +11,16 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "app/subcommands/subcommand.hpp"
 #include "config/command_line/command_line.hpp"
-#include "config/mesh_process.hpp"
-#include "config/volume/volume_process.hpp"
+
 #include "drivers/display/renderer.hpp"
 #include "ipc/control/instance.hpp"
+#include "ipc/sandbox/child_process.hpp"
 #include "ipc/sysv/limits.hpp"
 #include "ipc/sysv/shared_memory_limits.hpp"
 #include "ipc/web/web_server.hpp"
@@ -103,16 +105,21 @@ Finding renderer_finding(const char* name, display::Backend backend) {
   return {name, renderer.error().what, false, renderer.error().remedy};
 }
 
-Finding mesh_reader_finding() {
-  const auto found = check_mesh_reader();
-  if (found) return {"reader of meshes", installed_mesh_reader().program.string(), true, {}};
-  return {"reader of meshes", found.error().what, false, found.error().remedy};
-}
-
-Finding volume_reader_finding() {
-  const auto found = check_volume_reader();
-  if (found) return {"reader of DICOM slices", installed_volume_reader().program.string(), true, {}};
-  return {"reader of DICOM slices", found.error().what, false, found.error().remedy};
+// The programs that cellmirror starts for files and networks; a half-done installation lacks some.
+std::vector<Finding> confined_program_findings() {
+  constexpr std::pair<const char*, std::string_view> kPrograms[] = {
+      {"reader of meshes", "cellmirror-mesh-reader"},
+      {"reader of DICOM slices", "cellmirror-volume-reader"},
+      {"process for DDS", "cellmirror-dds"},
+      {"process for MQTT", "cellmirror-mqtt"}};
+  std::vector<Finding> findings;
+  for (const auto& [name, program] : kPrograms) {
+    const auto path = program_beside_this(program);
+    const auto found = check_program(path);
+    findings.push_back(found ? Finding{name, path.string(), true, {}}
+                             : Finding{name, found.error().what, false, found.error().remedy});
+  }
+  return findings;
 }
 
 std::vector<Finding> examine() {
@@ -126,8 +133,7 @@ std::vector<Finding> examine() {
   findings.push_back(page_finding());
   add(ipc_findings(read_sysv_limits(), read_remove_ipc()));
   add(shared_memory_findings(read_shared_memory_limits(), read_left_segments(::geteuid())));
-  findings.push_back(mesh_reader_finding());
-  findings.push_back(volume_reader_finding());
+  for (Finding& finding : confined_program_findings()) findings.push_back(std::move(finding));
   findings.push_back(renderer_finding("GL renderer", display::Backend::osmesa));
   findings.push_back(renderer_finding("GL renderer, instead", display::Backend::egl));
   return findings;

@@ -21,9 +21,7 @@ std::unexpected<Error> why_reader_ended(std::optional<int> status) {
   if (status && WIFSIGNALED(*status)) {
     const int signal = WTERMSIG(*status);
     if (signal == SIGXCPU) return fail("its reader took too much CPU time", "export the series without compression");
-    const char* known = sigabbrev_np(signal);
-    return fail(fmt::format("its reader ended with signal {} (SIG{}): the file is damaged", signal,
-                            known != nullptr ? known : "?"),
+    return fail(fmt::format("its reader ended with signal {}: the file is damaged", signal_text(signal)),
                 kExportSliceAgain);
   }
   return fail("its reader ended: the file is damaged", kExportSliceAgain);
@@ -32,8 +30,6 @@ std::unexpected<Error> why_reader_ended(std::optional<int> status) {
 }  // namespace
 
 VolumeReader installed_volume_reader() { return {program_beside_this("cellmirror-volume-reader")}; }
-
-Result<void> check_volume_reader(const VolumeReader& reader) { return check_reader_program(reader.program); }
 
 Result<void> VolumeProcess::start() {
   if (started_) return {};

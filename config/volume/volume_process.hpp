@@ -24,9 +24,6 @@ struct VolumeReader {
 // Beside the running program, where it is installed and where it is built.
 [[nodiscard]] VolumeReader installed_volume_reader();
 
-// Why it could not be started, without starting it: for `cellmirror doctor`.
-[[nodiscard]] Result<void> check_volume_reader(const VolumeReader& reader = installed_volume_reader());
-
 // What is in a file.
 struct SliceHeadRead {
   SliceAnswerKind kind = SliceAnswerKind::no_dicom;  // head, no_dicom or incomplete

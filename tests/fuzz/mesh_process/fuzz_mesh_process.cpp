@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "config/mesh_process.hpp"
+#include "ipc/sandbox/child_process.hpp"
 #include "rt_core/base/contract.hpp"
 
 namespace {
@@ -33,7 +34,7 @@ MeshReader reader() {
     made.program = std::filesystem::path(folder) / "cellmirror-mesh-reader";
   }
   made.longest = std::chrono::seconds(3);  // well below the time-out of an input, 5 s, on a busy machine too
-  CELLMIRROR_EXPECTS(check_mesh_reader(made).has_value());
+  CELLMIRROR_EXPECTS(check_program(made.program).has_value());
   return made;
 }
 

@@ -19,6 +19,7 @@
 
 #include "config/mesh_file.hpp"
 #include "config/mesh_process.hpp"
+#include "ipc/sandbox/child_process.hpp"
 #include "tests/unit/config/mesh_text.hpp"
 #include "tests/unit/config/temporary_home.hpp"
 
@@ -109,8 +110,8 @@ TEST_F(MeshProcess, says_what_to_do_where_the_reader_is_missing) {
   EXPECT_EQ(refusal(sut),
             "it cannot be read: " + name +
                 " cannot be started: No such file or directory; install it beside cellmirror; both are built together");
-  EXPECT_FALSE(check_mesh_reader(sut));
-  EXPECT_TRUE(check_mesh_reader());
+  EXPECT_FALSE(check_program(sut.program));
+  EXPECT_TRUE(check_program(installed_mesh_reader().program));
 }
 
 TEST_F(MeshProcess, hands_down_neither_signals_nor_descriptors_nor_priority) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include "ipc/sandbox/child_process.hpp"
 #include "tests/unit/config/temporary_home.hpp"
 
 namespace cellmirror {
@@ -22,7 +23,7 @@ class ReaderOfSlices : public testing::Test {
 
 TEST_F(ReaderOfSlices, ThatIsMissingIsReportedWithItsName) {
   const VolumeReader reader{home_.root() / "none"};
-  EXPECT_FALSE(check_volume_reader(reader));
+  EXPECT_FALSE(check_program(reader.program));
   const auto sut = VolumeProcess(reader).head("x", true);
   ASSERT_FALSE(sut);
   EXPECT_NE(sut.error().what.find("none cannot be started"), std::string::npos) << sut.error().what;
