@@ -2,6 +2,8 @@
 
 import functools
 import json
+import os
+import signal
 import struct
 import unittest
 
@@ -196,6 +198,19 @@ class Controllers(unittest.TestCase):
         self.assertTrue(g.eventually(lambda: any(line["status"].get(str(goals + 1)) == SUCCEEDED for line in client.lines("status")),
                                      PATIENCE_S))
         self.assertTrue(g.eventually(lambda: abs(self.position() - 0.2) < 1e-9, PATIENCE_S))
+
+    @each_client
+    def test_a_goal_goes_on_while_the_process_of_dds_is_replaced(self, client, goals):
+        self.assertTrue(self.goal(client, goals + 41, (0.5, 0.1), (6, 0.3)))
+        before = len(client.lines("result"))
+        client.write(f"result {goals + 41}")  # waits in the gateway
+        process = next(one for one in self.scratch.status()["processes"] if f"domain {DOMAIN} " in one["subject"])
+        os.kill(process["pid"], signal.SIGKILL)
+        result = client.next_line("result", before)
+        self.assertEqual((result["result"], result["error_code"]), (SUCCEEDED, 0))
+        self.assertTrue(g.eventually(lambda: abs(self.position() - 0.3) < 1e-9, PATIENCE_S))
+        self.assertTrue(self.goal(client, goals + 42, (0.3, 0.2)), "the new process takes goals")
+        self.assertEqual(self.result(client, goals + 42)["result"], SUCCEEDED)
 
     @each_client
     def test_goals_that_are_wrong_tell_why(self, client, goals):
