@@ -18,6 +18,10 @@ namespace cellmirror::mqtt {
 inline constexpr ChannelConfig kMqttChannel{
     .to_child_bytes = 2U << 20U, .to_owner_bytes = 1U << 20U, .longest_message = (1U << 20U) - 64};
 
+// Bytes of a received payload that the process forwards. A longer payload is cut; it is far beyond the longest command,
+// so that cellmirror refuses it with the reason.
+inline constexpr std::size_t kMostForwarded = 256UL << 10U;
+
 // --- to the process -------------------------------------------------------------------------------------------------
 
 // Connects to the broker. The first message, sent once. Paths are absolute.

@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <ctime>
 #include <exception>
@@ -113,8 +114,8 @@ class Connection {
   void send(MqttEvent event, std::span<const std::byte> payload = {}) {
     encode(event, bytes_);
     constexpr timespec kPause{0, 1'000'000};
-    while (!channel_.send(bytes_, payload)) {
-      if (bytes_.size() + payload.size() > kMqttChannel.longest_message || channel_.ended()) return;
+    while (!channel_.send(bytes_, payload.first(std::min(payload.size(), kMostForwarded))) && !channel_.ended()) {
+      channel_.beat();
       nanosleep(&kPause, nullptr);
     }
   }
