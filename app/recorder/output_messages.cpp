@@ -36,7 +36,7 @@ constexpr std::string_view kEventSchema = R"({
 "a":{"type":"string"},"b":{"type":"string"},"distance_m":{"type":"number"}}})";
 
 constexpr std::string_view kTissueEventSchema = R"({
-"type":"object","title":"what an instrument did to tissue, or what became of tissue","properties":{
+"type":"object","title":"event of soft tissue, or action of an instrument on it","properties":{
 "number":{"type":"integer"},"time_ns":{"type":"integer"},"event":{"type":"string"},"robot":{"type":"string"},
 "object":{"type":"string"},"part":{"type":"string"},"limit":{"type":"string"},
 "at_m":{"type":"array","items":{"type":"number"}},"value":{"type":"number"},"text":{"type":"string"}}})";

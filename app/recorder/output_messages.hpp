@@ -52,7 +52,7 @@ struct OutputTopics {
 
 [[nodiscard]] std::string collisions_message(const ProximityState& state);
 [[nodiscard]] std::string collision_event_message(const ProximityEvent& event);
-// `text`: the event for people; `wall_ns`: when it happened.
+// `text`: the event as a sentence; `wall_ns`: the time of the event.
 [[nodiscard]] std::string tissue_event_message(const NamedTissueEvent& event, std::string_view text,
                                                std::int64_t wall_ns);
 [[nodiscard]] std::string forces_message(const ForceState& state);

@@ -37,6 +37,10 @@ TissueRecorder::TissueRecorder(TissueSources sources, RecordingHub& hub)
 
 void TissueRecorder::forget() {
   newest_event_.reset();
+  repeat_shapes();
+}
+
+void TissueRecorder::repeat_shapes() {
   // Revisions go on: a file that goes on has those of before.
   for (auto& [object, written] : surfaces_) written.with_shape = {};
   effects_.with_shape = {};
@@ -51,19 +55,21 @@ bool TissueRecorder::wanted() const {
          std::ranges::any_of(surfaces_, [&](const auto& one) { return hub_.wants(*one.second.topic); });
 }
 
-// Events are few, and recorded whatever the rate of shapes is.
+// Records events at any rate of shapes, because they are few.
 void TissueRecorder::record_events(const CellState& cell) {
   const std::shared_ptr<const TissueReport> report = sources_.newest_report();
   if (!report) return;
   const std::vector<TissueEvent>& events = report->state.events;
   const std::uint64_t newest = events.empty() ? 0 : events.back().number;
-  if (!newest_event_ || newest < *newest_event_) newest_event_ = newest;  // also: numbers of a new simulation
+  // A new simulation restarts the numbers.
+  if (!newest_event_ || newest < *newest_event_) newest_event_ = newest;
+  const bool wanted = hub_.wants(*events_topic_);  // asked at each look, so that live clients learn of the topic
   for (const TissueEvent& event : events) {
-    if (event.number <= *newest_event_) continue;
+    if (event.number <= *newest_event_ || !wanted) continue;
     const NamedTissueEvent named{event, robot_name(cell, event.instrument), object_name(report->state, event.object)};
     const std::int64_t wall_ns = to_wall_clock_ns(event.time);
     const std::string text = tissue_event_message(named, sentence(named), wall_ns);
-    if (hub_.wants(*events_topic_)) hub_.put(events_topic_, wall_ns, mcap::view_of(text));
+    hub_.put(events_topic_, wall_ns, mcap::view_of(text));
   }
   newest_event_ = newest;
 }
@@ -81,7 +87,7 @@ void TissueRecorder::look(Timestamp now, const CellState* cell) {
   if (!view) return;
   const std::uint64_t files = hub_.files_begun();
   const bool begun = std::exchange(files_, files) != files;
-  if (begun) forget();
+  if (begun) repeat_shapes();
   // Tissue that stands still has its shapes again from time to time, for seeks.
   if (view->step == last_step_ && !begun && (played || !has_passed(now, last_shapes_, kBetweenShapes))) return;
   last_step_ = view->step;

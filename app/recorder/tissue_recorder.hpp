@@ -26,9 +26,9 @@ class TissueRecorder {
   // Does nothing where `sources` is empty. `hub` outlives it.
   TissueRecorder(TissueSources sources, RecordingHub& hub);
 
-  // `cell`: names of the robots; null: none are known.
+  // `cell`: the names of the robots; null: events are not recorded.
   void look(Timestamp now, const CellState* cell = nullptr);
-  // Nothing is recorded any more: what begins next has the shapes again.
+  // To be called while nothing is recorded: the next recording starts with the shapes and with later events.
   void forget();
 
  private:
@@ -42,6 +42,8 @@ class TissueRecorder {
   };
 
   void record_events(const CellState& cell);
+  // The next message of each surface has its shape, for the start of a file. Events go on.
+  void repeat_shapes();
   [[nodiscard]] bool wanted() const;
   // Whether the shape is due: it has changed, is that of another file, or was written too long ago.
   bool take_shape(Written& written, std::vector<std::shared_ptr<const void>> shape, Timestamp now) const;
@@ -54,7 +56,7 @@ class TissueRecorder {
   std::map<std::string, Written, std::less<>> surfaces_;  // by object
   Written effects_;
   TopicPtr events_topic_;
-  std::optional<std::uint64_t> newest_event_;  // none: those of before the recording are not its own
+  std::optional<std::uint64_t> newest_event_;  // none: earlier events do not belong to the recording
   TopicPtr markers_topic_;
   dds::TissueMarkers markers_;
   dds::MarkerArray marker_message_;

@@ -130,7 +130,7 @@ TEST_F(TissueRecorderTest, WithoutARateNobodyAsksForShapes) {
   EXPECT_TRUE(recorded("a.mcap").empty());
 }
 
-TEST_F(TissueRecorderTest, EventsAreRecordedOnceAndWithNames) {
+TEST_F(TissueRecorderTest, RecordsEventsOnceAndWithNames) {
   CellState cell;
   cell.robots.emplace_back();
   cell.robots[0].id = "LAP";
@@ -155,30 +155,36 @@ TEST_F(TissueRecorderTest, EventsAreRecordedOnceAndWithNames) {
     now_ = now_ + Nanoseconds(20'000'000);
     sut_.look(now_, &cell);
   };
-  record("a.mcap", 0);  // whatever the rate of shapes is
-  report(1, 2);
-  look_at_cell();  // of before the recording
-  report(1, 4);
-  look_at_cell();
-  look_at_cell();
-  report(3, 5);
-  look_at_cell();
-  end();
-  const auto source = mcap::FileSource::open(folder_.path() / "a.mcap");
-  ASSERT_TRUE(source);
-  auto reader = mcap::Reader::open(**source);
-  ASSERT_TRUE(reader);
-  std::vector<std::string> texts;
-  ASSERT_TRUE(reader->read({.topics = {"/cellmirror/tissue_events"}}, [&](const mcap::Message& message, const auto&) {
-    texts.emplace_back(reinterpret_cast<const char*>(message.data.data()), message.data.size());
-    return true;
-  }));
-  ASSERT_EQ(texts.size(), 3U);
-  EXPECT_NE(texts[0].find(R"("number":3)"), std::string::npos) << texts[0];
-  EXPECT_NE(texts[0].find(R"("event":"grip","robot":"LAP","object":"liver")"), std::string::npos) << texts[0];
-  EXPECT_NE(texts[1].find(R"("event":"release")"), std::string::npos) << texts[1];
-  EXPECT_NE(texts[1].find(R"("value":4.5)"), std::string::npos) << texts[1];
-  EXPECT_NE(texts[2].find(R"("number":5)"), std::string::npos) << texts[2];
+  // A file that begins with shapes does not lose the events between its first two looks.
+  for (const double rate_hz : {0.0, 10.0}) {
+    SCOPED_TRACE(rate_hz);
+    const std::string file = rate_hz > 0 ? "shapes.mcap" : "events.mcap";
+    sut_.forget();
+    record(file, rate_hz);
+    report(1, 2);
+    look_at_cell();  // these events are older than the recording
+    report(1, 4);
+    look_at_cell();
+    look_at_cell();
+    report(3, 5);
+    look_at_cell();
+    end();
+    const auto source = mcap::FileSource::open(folder_.path() / file);
+    ASSERT_TRUE(source);
+    auto reader = mcap::Reader::open(**source);
+    ASSERT_TRUE(reader);
+    std::vector<std::string> texts;
+    ASSERT_TRUE(reader->read({.topics = {"/cellmirror/tissue_events"}}, [&](const mcap::Message& message, const auto&) {
+      texts.emplace_back(reinterpret_cast<const char*>(message.data.data()), message.data.size());
+      return true;
+    }));
+    ASSERT_EQ(texts.size(), 3U);
+    EXPECT_NE(texts[0].find(R"("number":3)"), std::string::npos) << texts[0];
+    EXPECT_NE(texts[0].find(R"("event":"grip","robot":"LAP","object":"liver")"), std::string::npos) << texts[0];
+    EXPECT_NE(texts[1].find(R"("event":"release")"), std::string::npos) << texts[1];
+    EXPECT_NE(texts[1].find(R"("value":4.5)"), std::string::npos) << texts[1];
+    EXPECT_NE(texts[2].find(R"("number":5)"), std::string::npos) << texts[2];
+  }
 }
 
 TEST_F(TissueRecorderTest, WhatCannotBeRecordedIsCounted) {
