@@ -44,7 +44,7 @@ test("the curve of a robot without data ends", () => {
   assert.deepEqual(near.map((value) => value !== null), [true, true, false, true, true]);
 });
 
-test("the page begins with what is not known", () => {
+test("the page shows unknown states before the first data", () => {
   const page = readFileSync(new URL("./index.html", import.meta.url), "utf8");
   for (const id of ["no-touching", "no-near", "no-alarms", "no-alarm-history", "no-robots", "no-tissue-events"])
     assert.match(page, new RegExp(`id="${id}" class="empty unknown">Not known yet`), id);

@@ -1,4 +1,4 @@
-// What the page says where there is no connection, and of a replay.
+// Texts of the page without a connection, and in a replay.
 import assert from "node:assert/strict";
 import test from "node:test";
 import {Presence} from "./modules/presence.js";
@@ -35,18 +35,18 @@ function made(answer) {
 const turn = () => new Promise((resolve) => setImmediate(resolve));
 const line = (node) => [node("line-text").textContent, node("line-badge").getAttribute("data-state")];
 
-test("a page too many hears that the gateway answers and takes no further one", async () => {
+test("a refused page says that the gateway accepts no further page", async () => {
   const {node, emit} = made(async () => ({status: 200}));
   emit("closed", {retry_s: 1});
   await turn();
   assert.equal(node("gone").hidden, false);
-  assert.equal(node("gone-title").textContent, "This page has no place at the gateway.");
+  assert.equal(node("gone-title").textContent, "The gateway accepts no further page.");
   assert.equal(node("gone-full").hidden, false);
   assert.equal(node("gone-help").hidden, true);
-  assert.deepEqual(line(node), ["no place for this page", "lost"]);
+  assert.deepEqual(line(node), ["too many pages", "lost"]);
 });
 
-test("only where nothing answers the gateway is gone", async () => {
+test("the page reports the gateway as gone only if nothing answers", async () => {
   const {node, connection, emit} = made(async () => {
     throw new TypeError("refused");
   });
@@ -60,11 +60,30 @@ test("only where nothing answers the gateway is gone", async () => {
   assert.equal(node("gone-help").hidden, false);
 });
 
-test("a replay is no live cell", () => {
+test("a page that lost its connection does not claim that there are too many pages", async () => {
+  const {node, connection, emit} = made(async () => ({status: 200}));
+  connection.open = true;
+  emit("opened");
+  connection.open = false;
+  emit("closed", {retry_s: 1});
+  await turn();
+  assert.equal(node("gone-title").textContent, "The gateway is gone.");
+});
+
+test("an answer other than 200 does not mean that there are too many pages", async () => {
+  for (const status of [429, 502, 503]) {
+    const {node, emit} = made(async () => ({status}));
+    emit("closed", {retry_s: 1});
+    await turn();
+    assert.equal(node("gone-title").textContent, "There is no connection to the gateway.", String(status));
+  }
+});
+
+test("a replay is not shown as a live cell", () => {
   const {node, connection, sut, emit} = made(async () => ({status: 200}));
   connection.open = true;
   emit("opened");
-  assert.deepEqual(line(node), ["connecting", "none"], "nothing has come yet");
+  assert.deepEqual(line(node), ["connecting", "none"], "no data has arrived yet");
   sut.live({cell: "c", replay: {state: "playing"}});
   sut.show_line_();
   assert.deepEqual(line(node), ["replay, not live", "replay"]);

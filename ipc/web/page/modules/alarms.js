@@ -61,14 +61,14 @@ export class Alarms {
     this.shown_ = null;
   }
 
-  // Nothing comes from the gateway any more, or it does again.
+  // `quiet`: the gateway sends no data.
   show_quiet(quiet) {
     this.quiet_ = quiet;
     this.show_nothing_();
   }
 
   show_nothing_() {
-    if (this.document_ === null) return;  // what the page has from the beginning says that nothing is known
+    if (this.document_ === null) return;  // the initial text of the page already says so
     for (const [id, said] of [["no-alarms", "Nothing needs attention."], ["no-alarm-history", "No earlier alarms."]]) {
       setText(byId(id), this.quiet_ ? "Not known: no news from the gateway." : said);
       byId(id).classList.toggle("unknown", Boolean(this.quiet_));

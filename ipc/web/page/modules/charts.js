@@ -23,16 +23,16 @@ const kQuantities = {
   effort: {prefix: "e", unit: null},
 };
 
-// What there is little of goes first: in a large cell not all joints find a place.
 const kOld_s = 0.5;
 
+// Records rare values first: in a large cell not all joints get a place.
 export function record(history, live) {
   history.add(live.time_s ?? 0, (put) => {
     put("loop|wake-up p99", live.loop?.latency_p99_us);
     put("loop|tick p99", live.loop?.compute_p99_us);
     put("loop|missed periods", live.loop?.missed);
     for (const queue of live.queues ?? []) put(`queue|${queue.name}`, queue.dropped, kSpare);
-    // What is old is no curve that goes on.
+    // An outdated result ends the curve.
     const tested = !(live.collision_age_s > kOld_s);
     for (const pair of live.near ?? []) put(`near|${pair.a} – ${pair.b}`, tested ? pair.distance_m : null);
     for (const pair of live.touching ?? []) put(`near|${pair.a} – ${pair.b}`, tested ? 0 : null);
@@ -43,8 +43,8 @@ export function record(history, live) {
   });
 }
 
-// Whether a joint's value is its present one. Of a mirrored robot without data it is the last that was known: the curve
-// ends there.
+// Returns true if the joint's value is current. A mirrored robot without data has only the last known value: its curve
+// ends.
 export function is_known(robot, joint) {
   return robot.mode !== "mirrored" || ["fresh", "stale"].includes(joint.state ?? robot.state);
 }

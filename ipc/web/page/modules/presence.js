@@ -112,27 +112,31 @@ export class Presence {
     }
     document.documentElement.classList.add("gateway-gone");
     byId("gone").hidden = false;
-    this.show_why_(this.was_open_ ? "gone" : "unknown");
+    // The first retry follows a lost connection; only a connection that was refused has another cause.
+    if (this.was_open_) this.show_why_("gone");
+    else this.ask_why_();
+    if (this.why_ === undefined) this.show_why_("unknown");
     this.was_open_ = false;
-    this.ask_why_();
     this.tick_();
   }
 
-  // The browser does not report why a WebSocket was refused. A gateway that answers has no place for another page.
+  // Browsers do not report why a WebSocket was refused. A healthy gateway refuses it only if it has no room for another
+  // page; a proxy in front of a gateway that is gone does not answer with 200.
   async ask_why_() {
     let answers = false;
     try {
-      answers = (await this.fetch_("healthz", {cache: "no-store"})).status > 0;
+      answers = (await this.fetch_("healthz", {cache: "no-store"})).status === 200;
     } catch {
       answers = false;
     }
     if (this.connection_.open) return;
-    this.show_why_(answers ? "full" : "gone");
+    if (answers) this.show_why_("full");
+    else if (this.why_ === "full") this.show_why_("gone");
     this.show_line_();
   }
 
   show_why_(why) {
-    const titles = {gone: "The gateway is gone.", full: "This page has no place at the gateway.", unknown: "There is no connection to the gateway."};
+    const titles = {gone: "The gateway is gone.", full: "The gateway accepts no further page.", unknown: "There is no connection to the gateway."};
     setText(byId("gone-title"), titles[why]);
     byId("gone-full").hidden = why !== "full";
     byId("gone-help").hidden = why === "full";
@@ -153,7 +157,7 @@ export class Presence {
     this.be_quiet_(silent !== null && (!this.connection_.open || silent > kLastKnown_s));
     let [text, state] = this.replay_ ? ["replay, not live", "replay"] : ["live", "fresh"];
     document.documentElement.classList.toggle("replay", Boolean(this.replay_));
-    const without = this.why_ === "full" ? "no place for this page" : this.heard_ === null ? "no connection" : "gateway gone";
+    const without = this.why_ === "full" ? "too many pages" : this.heard_ === null ? "no connection" : "gateway gone";
     if (!this.connection_.open) [text, state] = [this.retry_at_ === null ? "connecting" : without, "lost"];
     else if (silent === null) [text, state] = ["connecting", "none"];
     else if (silent > kQuiet_s) [text, state] = [`no news for ${age(silent)}`, "stale"];

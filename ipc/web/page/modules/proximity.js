@@ -25,8 +25,8 @@ const kOld_s = 0.5;
 
 const kNoNews = "Not known: no news from the gateway.";
 
-// What an empty list of pairs says, and whether that is known. `said`: for tests that are up to date; `quiet`: nothing has
-// come from the gateway for a while.
+// Text of an empty list of pairs, and true in `known` if the list is really empty. `said`: text for current results;
+// `quiet`: the gateway sends no data.
 export function nothing_in_words(live, said, quiet = false) {
   if (quiet) return {text: kNoNews, known: false};
   if (!Array.isArray(live.touching)) return {text: "Not known: nothing is tested.", known: false};
@@ -107,7 +107,7 @@ export class Proximity {
     setText(byId("force-note"), cut_note(shown(live.forces), live.forces?.length ?? 0));
   }
 
-  // Nothing comes from the gateway any more, or it does again.
+  // `quiet`: the gateway sends no data.
   show_quiet(quiet) {
     this.quiet_ = quiet;
     this.show_nothing_();
@@ -115,7 +115,7 @@ export class Proximity {
 
   show_nothing_() {
     for (const [id, said] of [["no-touching", "Nothing touches."], ["no-near", "Nothing is near."]]) {
-      if (!this.live_) continue;  // what the page has from the beginning says that nothing is known
+      if (!this.live_) continue;  // the initial text of the page already says so
       const {text, known} = nothing_in_words(this.live_, said, this.quiet_);
       setText(byId(id), text);
       byId(id).classList.toggle("unknown", !known);

@@ -93,11 +93,9 @@ export class Robots {
     setText(card.badge, kStateTexts[state] ?? state);
     setText(card.age, robot.mode === "mirrored" ? age(robot.age_s) : "");
     setText(card.flags, [robot.active ? "active" : "", robot.moving ? "moving" : ""].filter(Boolean).join(", "));
-    const refused = robot.refused_setpoints > 0 && robot.mode !== "mirrored"
-      ? `${robot.refused_setpoints} set points were beyond the limits of the joints and were not followed as given` : "";
-    const note = refused || (typeof robot.condition === "string" ? robot.condition : "");
+    const note = typeof robot.condition === "string" ? robot.condition : "";
     setText(card.note, note);
-    card.note.hidden = note === "" || (refused === "" && (state === "fresh" || state === "simulated"));
+    card.note.hidden = note === "" || state === "fresh" || state === "simulated";
     card.online.dataset.to = robot.mode === "mirrored" ? "offline" : "online";
     setText(card.online, robot.mode === "mirrored" ? "Take offline" : "Take online");
     card.online.hidden = robot.mode !== "mirrored" && robot.has_stream === false;
