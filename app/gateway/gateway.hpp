@@ -36,7 +36,8 @@ struct GatewayOptions {
   // Outlives the gateway; null: a gateway of real robots.
   PlayedRecording* playback = nullptr;
   bool publish = false;  // of a recording that is played: SENSOR records and DDS as well
-  // The cell came with a recording: it does not decide where the gateway listens and whom it reaches.
+  // True if the cell file came with a recording. Its network settings are ignored, so that a recording cannot connect
+  // the gateway to other machines.
   bool foreign_cell = false;
 };
 

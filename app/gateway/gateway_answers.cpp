@@ -159,7 +159,8 @@ void Gateway::Parts::look_at(const std::function<void(const LiveSources&)>& look
 
 namespace {
 
-// What streams and I/O nodes wait for: "waits for can0 (robot A, I/O node 7); ...".
+// Lists each missing network interface with the streams and I/O nodes that wait for it: "waits for can0 (robot A, I/O
+// node 7); ...".
 std::string missing_interfaces(const CellState& cell) {
   std::map<std::string, std::vector<std::string>> waiting;
   std::map<std::string, std::string> reasons;

@@ -28,7 +28,7 @@ void log_findings(const Diagnostics& diagnostics) {
   }
 }
 
-// The page of a replay is for this machine, at the port that the operator chooses.
+// Serves the page of a replay on loopback only, at the port that the operator chooses.
 void keep_page_here(WebSettings& page) {
   page.enabled = true;
   page.address = WebSettings().address;
@@ -36,7 +36,7 @@ void keep_page_here(WebSettings& page) {
   page.origins.clear();
 }
 
-// With --publish: DDS on loopback, no broker, and the queues of the instance.
+// Limits the outputs of --publish: DDS on loopback, no MQTT broker, and the message queues of the instance.
 void keep_outputs_here(LoadedCell& cell) {
   cell.mqtt.enabled = false;
   cell.dds.interface_address = DdsOutputConfig().interface_address;

@@ -7,7 +7,7 @@ namespace cellmirror::app {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kWithinATurn = kTurn * (1.0 + 1e-6);  // rounded in degrees, or in single precision
+constexpr double kWithinATurn = kTurn * (1.0 + 1e-6);  // tolerates rounding in degrees or single precision
 
 }  // namespace
 

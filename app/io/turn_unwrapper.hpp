@@ -1,5 +1,4 @@
-// Joints that turn without end, whose source starts again after each turn: makes their positions go on. One source
-// thread.
+// Makes the positions of continuous joints continuous if their source wraps after each turn. One source thread.
 #pragma once
 
 #include <array>
@@ -10,15 +9,15 @@
 
 namespace cellmirror::app {
 
-// Between a stream and the inlet of its robot, so that the check of plausibility, pictures, charts and recordings get
-// one motion. A position that a source gives within one turn of zero is continued from the one before, by the shorter
-// way; one that is beyond is a count of the source's own, and taken as it is.
+// Sits between a stream and the inlet of its robot, so that the plausibility check, pictures, charts and recordings see
+// one motion. Continues positions within one turn of zero from the previous one by the shorter way. A position beyond
+// one turn shows that the source itself counts turns: it passes unchanged.
 class TurnUnwrapper final : public JointSampleSink {
  public:
   // `joints`: bit i for joint i, in rad. `inner` outlives this.
   TurnUnwrapper(JointSampleSink& inner, std::uint32_t joints) : inner_(&inner), joints_(joints) {}
 
-  // A stream is opened: nothing is known of its source.
+  // Discards the state of the previous source.
   void restart() { joints_state_ = {}; }
 
   bool push(const JointSample& sample) noexcept override;
@@ -27,7 +26,7 @@ class TurnUnwrapper final : public JointSampleSink {
   struct Joint {
     bool known = false;
     double last = 0;   // rad, as the source gave it
-    double turns = 0;  // that are added, in rad
+    double turns = 0;  // offset that is added, in rad
   };
 
   JointSampleSink* inner_;

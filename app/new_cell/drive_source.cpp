@@ -49,7 +49,7 @@ bool is_default(const TpdoConfig& tpdo) {
          tpdo.entries[0].bits == 16 && tpdo.entries[1].index == kPositionActual && tpdo.entries[1].bits == 32;
 }
 
-// Tells what the device is instead.
+// Returns true if the device is a drive; otherwise reports the kind of the device.
 bool is_drive(const can::DeviceDescription& device, const std::string& file, Diagnostics& diagnostics) {
   if (can::is_drive(device)) return true;
   const auto type = device.objects.integer({0x1000, 0});

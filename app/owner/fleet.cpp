@@ -231,7 +231,7 @@ JointSampleSink& Fleet::sink_of(FleetRobot& robot) {
   for (std::size_t i = 0; i < kinds.size() && i < kMaxJointsPerRobot; ++i) {
     if (kinds[i] == JointKind::continuous) turning |= 1U << i;
   }
-  // A drive that answers a controller knows how far its joint has turned.
+  // A simulated drive counts the turns of its joint itself.
   const auto config = streams_.find(robot.id);
   const bool counts = config != streams_.end() && std::holds_alternative<Cia402DeviceConfig>(config->second);
   if (turning == 0 || counts) return inlet;

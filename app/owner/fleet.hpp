@@ -37,11 +37,11 @@ struct FleetRobot {
   // rad or m: where a command to the tick puts it, and the id of that command.
   JointValues put_at{};
   std::uint64_t put_command = 0;
-  JointValues start{};                        // where it was put when it was added, rad or m
-  bool commanded = false;                     // it has been moved, set to a position, or online since it was added
-  std::shared_ptr<TurnUnwrapper> turns = {};  // what the open stream gives samples to; null: no joint turns without end
-  std::shared_ptr<JointStream> stream;        // null until the first `online`; status() is asked from other threads
-  std::shared_ptr<ContactInlet> contacts = {};     // of drives that answer a controller; null: the robot has none
+  JointValues start{};                          // where it was put when it was added, rad or m
+  bool commanded = false;                       // it has been moved, set to a position, or online since it was added
+  std::shared_ptr<TurnUnwrapper> turns = {};    // sink of the open stream; null: no continuous joint
+  std::shared_ptr<JointStream> stream;          // null until the first `online`; status() is asked from other threads
+  std::shared_ptr<ContactInlet> contacts = {};  // of drives that answer a controller; null: the robot has none
   std::shared_ptr<const FaultTarget> faults = {};  // likewise
 };
 
@@ -125,7 +125,7 @@ class Fleet final : public MotionPort {
   // The stream of the cell file, else that of the robot's device.
   Result<void> make_stream(FleetRobot& robot);
   Result<void> take_offline(FleetRobot& robot);
-  // Where its stream puts samples, while it is open.
+  // Returns the sink for the samples of its stream; makes a TurnUnwrapper if the robot has continuous joints.
   [[nodiscard]] JointSampleSink& sink_of(FleetRobot& robot);
   [[nodiscard]] std::uint8_t slot_of(std::string_view id) const;
 

@@ -20,7 +20,7 @@ constexpr std::uint64_t kPairsListed = 12;  // frames that are shown one by one
 constexpr std::uint64_t kMostChanges = 40;  // lines about frames in which something changes
 constexpr std::size_t kMostPairs = 30;      // of the summary: those that touch in most frames
 constexpr std::size_t kMostDoubt = 400;     // characters of a sentence
-constexpr std::size_t kMostLeftOut = 6;     // pairs that are named per reason
+constexpr std::size_t kMostLeftOut = 6;     // pairs listed per reason
 
 std::size_t tested_pairs(const collision::PairTable& pairs) {
   return static_cast<std::size_t>(
@@ -147,7 +147,7 @@ CollideText::CollideText(const CollideHeading& heading, const collision::PairTab
   for (const std::string& doubt : pairs.doubts) put(out_, "in doubt: {}\n", printable(doubt, kMostDoubt));
 }
 
-// One line per reason, so that nobody takes a pair for free that is not tested.
+// Prints one line per reason, so that an untested pair is not mistaken for a pair without contact.
 void CollideText::left_out(const collision::PairTable& pairs) {
   using collision::PairState;
   for (const PairState state : {PairState::neighbours, PairState::always, PairState::never, PairState::rule_ignore}) {

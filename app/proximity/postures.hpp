@@ -33,7 +33,7 @@ class Postures {
   // the file is no longer what it was.
   Result<bool> next();
   [[nodiscard]] std::span<const JointValues> q() const { return q_; }  // by slot
-  // Robots that are outside of their joint ranges in a posture.
+  // Robots that are outside of their joint ranges in at least one posture of the file.
   [[nodiscard]] const collision::SlotSet& beyond() const { return ranges_.beyond(); }
 
  private:

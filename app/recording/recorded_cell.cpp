@@ -124,7 +124,7 @@ fs::path recorded_cell_path(const mcap::Reader& reader) { return gateway_value(r
 std::string recorded_cell_remedy(const mcap::Reader& reader) {
   const fs::path recorded = recorded_cell_path(reader);
   if (recorded.empty()) return "name the cell file with --recorded-cell";
-  return fmt::format("name the cell file with --recorded-cell; the recorded gateway had {}",
+  return fmt::format("name the cell file with --recorded-cell; the recorded gateway used {}",
                      printable(recorded.string()));
 }
 

@@ -32,7 +32,7 @@ struct RecordedCell {
 // Where the cell file was when it was recorded; empty: the recording does not say.
 [[nodiscard]] std::filesystem::path recorded_cell_path(const mcap::Reader& reader);
 
-// Which option names the cell file, and where it was. The path is for people: it comes from the recording.
+// Remedy that names the option for the cell file and the recorded path. The path is untrusted: for display only.
 [[nodiscard]] std::string recorded_cell_remedy(const mcap::Reader& reader);
 
 struct ExtractedCell {

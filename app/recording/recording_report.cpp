@@ -136,9 +136,8 @@ std::string recording_info_text(const std::string& file, std::uint64_t bytes, co
         fmt::format("no summary is used: {}; repair it with: cellmirror recording recover\n", reader.why_not_indexed());
   if (reader.chunks_left_out() > 0) {
     out += fmt::format(
-        "{} of {} chunks are not counted: all of them have {:.1f} GB decompressed; read them too, if you know where "
-        "the "
-        "file is from, with: --decompressed-limit {:.0f}\n",
+        "{} of {} chunks are not counted: all chunks together have {:.1f} GB decompressed; if you trust the origin of "
+        "the file, read them with: --decompressed-limit {:.0f}\n",
         reader.chunks_left_out(), reader.chunks().size(), 1e-9 * static_cast<double>(uncompressed_bytes(reader)),
         std::ceil(1e-9 * static_cast<double>(uncompressed_bytes(reader))));
   }

@@ -144,7 +144,7 @@ void add_traffic(MetricsText& out, const LiveSources& sources, const web::Server
   out.one("cellmirror_page_wrong_tokens_total", "counter", "Wrong tokens that clients of the page have sent.",
           static_cast<double>(web.wrong_tokens));
   out.one("cellmirror_page_unread_tokens_total", "counter",
-          "Tokens refused without a look, because their sender had sent too many wrong ones.",
+          "Tokens refused without a check, because their sender had sent too many wrong ones.",
           static_cast<double>(web.unread_tokens));
   out.one("cellmirror_page_cut_total", "counter", "Connections ended for being too slow or silent.",
           static_cast<double>(web.cut));

@@ -12,8 +12,8 @@ namespace cellmirror::app {
 struct PageReport {
   bool on = false;
   std::string address;          // "http://127.0.0.1:8420/", without the token; empty: there is no page
-  std::string listens_on = {};  // numeric address; another one than loopback only where the cell file says so
-  std::string problem;          // why there is none although it is wanted; empty: nothing is wrong
+  std::string listens_on = {};  // numeric address; loopback unless the cell file sets another one
+  std::string problem;          // why a requested page does not exist; empty: no problem
   bool read_only = false;
   web::ServerStatus server;
   foxglove::FeedStatus live;  // clients of the Foxglove protocol

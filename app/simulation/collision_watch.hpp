@@ -41,7 +41,7 @@ class CollisionWatch {
   collision::PairDerivation derivation_;
   collision::Checker checker_;
   CellPoser follower_{false};
-  collision::RangeWatch ranges_;  // since the cell was taken
+  collision::RangeWatch ranges_;  // cleared with each new cell
   std::shared_ptr<const CellState> picture_;
   std::shared_ptr<const collision::Settings> settings_;
   bool tested_ = false;                                                      // the posture below

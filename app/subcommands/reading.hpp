@@ -1,4 +1,4 @@
-// How a subcommand reads a recording: within the limits that its user sets, with the progress on the terminal.
+// Options and progress line of the subcommands that read a recording.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace cellmirror::app {
 inline void add_decompressed_limit(cli::Command& command, std::optional<double>& gb) {
   command
       .option("--decompressed-limit", gb,
-              "read up to so many GB of decompressed chunks; otherwise 1.1 GB, or 200 times the file if that is more")
+              "limit of the decompressed chunks in GB; default: 1.1, or 200 times the size of the file if that is more")
       .between(0.001, 1e6);
 }
 
@@ -24,7 +24,7 @@ inline void add_decompressed_limit(cli::Command& command, std::optional<double>&
   return out;
 }
 
-// Outlives the reader. `shown`: false where its line would be among rows on the same terminal.
+// Outlives the reader. `shown` is false where the progress line would mix with output on the same terminal.
 class ReadingWatch {
  public:
   explicit ReadingWatch(bool shown = true)
@@ -41,7 +41,7 @@ class ReadingWatch {
     limits.progress = &progress_;
     return limits;
   }
-  // Before anything else is written on the terminal.
+  // Removes the progress line; call it before other output on the terminal.
   void end() { line_.reset(); }
 
  private:

@@ -64,8 +64,8 @@ std::vector<std::string> changed_files(const mcap::Reader& reader, const fs::pat
   return out;
 }
 
-// The file that the operator names, else the files in the recording, in `folder`. A path in a recording is not opened:
-// its author would decide what is read here.
+// Returns the file that the operator names, else the cell file extracted from the recording into `folder`. Never opens
+// a path from the recording: its author could make this process read any file.
 Result<std::string> find_recorded_cell(const mcap::Reader& reader, const ReplayCells& cells,
                                        std::optional<TemporaryFolder>& folder) {
   if (!cells.recorded.empty()) return cells.recorded;

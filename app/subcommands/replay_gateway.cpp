@@ -42,7 +42,8 @@ std::string not_whole(const Diagnostics& findings) {
   return "its attached files are not a whole cell";
 }
 
-// The attached files. A path in a recording is not opened: its author would decide what is read here.
+// Returns the file that the operator names, else the attached cell. Never opens a path from the recording: its author
+// could make this process read any file.
 Result<fs::path> cell_of(const mcap::Reader& reader, const ReplayGateway& options, const fs::path& folder) {
   if (!options.recorded_cell.empty()) return fs::path(options.recorded_cell);
   const auto attached = extract_cell(reader, folder);

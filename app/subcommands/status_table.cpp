@@ -96,7 +96,7 @@ class TableWriter {
          page.at("read_only").get<bool>() ? ", read-only" : "");
     // An older gateway does not count them.
     if (const auto wrong = page.value("wrong_tokens", std::uint64_t{0}); wrong > 0) {
-      line("          {}, {} more attempts refused unread: see the log for their addresses",
+      line("          {}, {} more attempts refused without a check: see the log for their addresses",
            number_of(wrong, "wrong token"), page.value("unread_tokens", std::uint64_t{0}));
     }
     if (page.contains("foxglove")) write_live(page.at("foxglove"));

@@ -93,7 +93,8 @@ void CollisionWorker::run(const CellState& cell_state, const engine::TickState& 
   // A component that was just loaded: its robots reach the tick a moment later. After a long derivation the posture is
   // old: the next tick is better.
   if (changed || !follower_.take_posture(tick)) return;
-  if (ranges_.note(*follower_.cell(), follower_.positions())) adopt(cell_state);  // quick: without new proofs
+  // Fast: no proof is attempted for the robots that have left their ranges.
+  if (ranges_.note(*follower_.cell(), follower_.positions())) adopt(cell_state);
   check(cell_state, tick);
 }
 

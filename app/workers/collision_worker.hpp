@@ -47,7 +47,7 @@ class CollisionWorker final : private TickJob {
   collision::PairDerivation derivation_;
   collision::Checker checker_;
   CellPoser follower_{false};
-  collision::RangeWatch ranges_;  // since the cell was taken
+  collision::RangeWatch ranges_;  // cleared with each new cell
   std::shared_ptr<const collision::Settings> settings_;
   bool nothing_to_test_ = false;
   ObjectPool<ProximityState> states_;

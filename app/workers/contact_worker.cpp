@@ -68,7 +68,7 @@ void ContactWorker::run(const CellState& cell_state, const engine::TickState& ti
   if (follow(cell_state) || !follower_.take_posture(tick)) return;
   if (ranges_.note(*follower_.cell(), follower_.positions())) {
     ranges_news_ = true;
-    (void)follow(cell_state);  // quick: without new proofs
+    (void)follow(cell_state);  // fast: no proof is attempted for these robots
   }
   const Timestamp start = clock_.now();
   for (const HapticSnapshot& haptic : cell_state.haptics) {

@@ -52,8 +52,8 @@ class ContactWorker final : private TickJob {
   // The worker's own.
   collision::PairDerivation derivation_;
   CellPoser follower_{false, true};  // planes are given at the tool centre point
-  collision::RangeWatch ranges_;     // since the bodies were taken
-  bool ranges_news_ = false;         // since the pairs were derived
+  collision::RangeWatch ranges_;     // cleared when the bodies change
+  bool ranges_news_ = false;         // true: a robot has left its ranges, and the pairs are out of date
   std::shared_ptr<const collision::Settings> settings_;
   std::shared_ptr<const collision::PairTable> pairs_;
   std::array<Finder, kMaxHapticDevices> finders_;

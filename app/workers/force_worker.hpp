@@ -21,7 +21,8 @@ namespace cellmirror::app {
 
 class ForceWorker final : private TickJob {
  public:
-  // But for gravity_W (m/s2, in the world) not owned; they outlive the worker. `loads`: of soft tissue; null: none.
+  // The arguments are not owned and outlive the worker, except gravity_W (m/s2, in the world). `loads`: of soft tissue
+  // on instruments; null: the cell has no tissue.
   ForceWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
               Nanoseconds tick_period, const Eigen::Vector3d& gravity_W, const Board<InstrumentLoads>* loads = nullptr);
 

@@ -17,8 +17,8 @@ const HapticState* device_of(const CellState& cell_state, const engine::TickStat
   return state.phase == HapticPhase::closed ? nullptr : &state;
 }
 
-// Of a robot without masses what the load gives to the joints, as while a haptic device moves it: the opposite of what
-// the drives need.
+// Writes the drive efforts; for a robot without masses the efforts that the load exerts on its joints, as while a
+// haptic device moves it. They are the negative drive efforts.
 void write_computed(const RobotForces& robot, RobotForceChannel& channel) {
   const double sign = robot.computed ? 1.0 : -1.0;
   JointValues efforts{};

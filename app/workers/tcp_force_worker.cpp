@@ -9,7 +9,7 @@ namespace cellmirror::app {
 
 namespace {
 
-// The device that moves the robot; null: none does.
+// Returns the haptic device that moves the robot; null: none.
 const HapticState* haptic_of(std::size_t slot, const engine::TickState& tick) {
   const auto state = std::ranges::find_if(tick.haptics, [&](const HapticState& haptic) {
     return haptic.phase != HapticPhase::closed && haptic.slot == slot;
@@ -23,7 +23,8 @@ void set_values(TcpForce& out, const Eigen::Vector3d& force, double axis_torque)
   out.flags = kTcpForceValid;
 }
 
-// Of the device that moves the active robot, else of the tissue that this touches; without either nothing is known.
+// Sets the force of the haptic device that moves the active robot, else that of the tissue that the robot touches.
+// Without either, the force stays invalid.
 void set_measured(TcpForce& out, const CellState& cell_state, const engine::TickState& tick,
                   const InstrumentLoads* loads) {
   const auto robot = std::ranges::find(cell_state.robots, cell_state.active_robot, &RobotSnapshot::id);

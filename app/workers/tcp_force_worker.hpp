@@ -11,13 +11,14 @@
 
 namespace cellmirror::app {
 
-// From the state of the cell and the tick; without sequence. `loads`: of soft tissue; null: none.
+// Returns the force without its sequence. `loads`: of soft tissue on instruments; null: the cell has no tissue.
 [[nodiscard]] TcpForce tcp_force_of(const CellState& cell_state, const engine::TickState& tick,
                                     const InstrumentLoads* loads = nullptr);
 
 class TcpForceWorker final : private TickJob {
  public:
-  // All are not owned and outlive the worker. `loads`: of soft tissue; null: none.
+  // The arguments are not owned and outlive the worker. `loads`: of soft tissue on instruments; null: the cell has no
+  // tissue.
   TcpForceWorker(engine::TickReader& ticks, const Board<CellState>& cell_states, const Clock& clock,
                  Nanoseconds tick_period, const Board<InstrumentLoads>* loads = nullptr);
 

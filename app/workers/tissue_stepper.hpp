@@ -29,7 +29,7 @@ class TissueStepper {
 
   [[nodiscard]] tissue::World& world() { return world_; }
   [[nodiscard]] const tissue::World& world() const { return world_; }
-  // As they stood in the last step.
+  // Poses of the instruments in the last step.
   [[nodiscard]] std::span<const tissue::InstrumentPose> instruments() const { return instruments_; }
 
  private:

@@ -55,7 +55,7 @@ class TissueWorker final : public TissuePort {
   Result<void> request(std::vector<tissue::Command> commands) override;
   // Any thread.
   [[nodiscard]] const Board<TissueReport>& reports() const { return reports_; }
-  // The newest of all instruments, also of those that no haptic device moves.
+  // The newest loads on all instruments, including those that no haptic device moves.
   [[nodiscard]] const Board<InstrumentLoads>& loads() const { return loads_; }
   // The newest shapes; they are made some thirty times a second for a while after each call, else not at all: the first
   // call after a while waits for one, for a tenth of a second at most. Null before the first step.

@@ -37,7 +37,7 @@ void Diagnostics::add(Diagnostic diagnostic) {
     return;
   }
   ++dropped_;
-  // An error behind a thousand warnings takes the place of one of those. With more errors than places none is left.
+  // An error after a thousand warnings replaces the last of them. Once errors outnumber the places, no warning is left.
   if (diagnostic.severity != Severity::error || errors_ > kKept) return;
   const auto other = std::find_if(kept_.rbegin(), kept_.rend(),
                                   [](const Diagnostic& kept) { return kept.severity != Severity::error; });

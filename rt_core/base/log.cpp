@@ -44,7 +44,7 @@ spdlog::logger& logger() {
   return *instance;
 }
 
-// Which level it writes from is decided by that of logger().
+// Writes every notice; log_notice() filters by the level of logger().
 spdlog::logger& notice_logger() {
   static const auto instance = make_logger("cellmirror-notices", spdlog::level::info);
   return *instance;

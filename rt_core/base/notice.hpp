@@ -1,12 +1,12 @@
-// Lines of the log about what people and instruments do with the cell: no warnings, and written like these unless only
-// errors are.
+// Log lines about the actions of people and instruments. They are not warnings, but are written wherever warnings are
+// written.
 #pragma once
 
 #include <string_view>
 
 namespace cellmirror {
 
-// As log_text() of the level info otherwise: rate limit by `kind`, observer, journal. Any thread.
+// Writes at level info; rate limit by `kind`, observer and journal are those of log_text(). Any thread.
 void log_notice(std::string_view kind, std::string_view message);
 
 }  // namespace cellmirror

@@ -32,7 +32,8 @@ void append(std::string& bytes, const JointChain& chain) {
   append(bytes, chain.X_tail);
 }
 
-// A joint that turns without end, or farther than one turn, repeats its postures after a turn if all that it drives do.
+// Restricts joints that turn farther than once to one turn. Their postures repeat after a turn only if every link that
+// follows the joint turns by an integer multiple of it.
 void restrict_to_a_turn(RelativeMotion& motion) {
   constexpr double kPi = std::numbers::pi;
   for (std::size_t i = 0; i < motion.variables.size(); ++i) {
@@ -59,7 +60,7 @@ void restrict_to_a_turn(RelativeMotion& motion) {
 
 SampledRange sampled_range(const CompiledRobot& robot, std::size_t joint) {
   constexpr SampledRange kTurn{-std::numbers::pi, std::numbers::pi, true};
-  constexpr SampledRange kSomewhere{-10.0, 10.0, false};  // m: a linear joint without end
+  constexpr SampledRange kSomewhere{-10.0, 10.0, false};  // m: a linear joint without limits
   const bool linear = robot.joint_kinds[joint] == JointKind::prismatic;
   if (robot.joint_kinds[joint] == JointKind::continuous) return kTurn;
   const double lower = robot.min_range[joint];

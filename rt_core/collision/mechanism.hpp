@@ -14,24 +14,24 @@
 
 namespace cellmirror::collision {
 
-// Positions beyond a range by no more than this are covered by what is proved: streams are noisy at their stops.
+// Proofs cover positions beyond a range by up to this much, because streams are noisy at the stops of joints.
 inline constexpr double kRangeTolerance = 0.01;         // rad
 inline constexpr double kLinearRangeTolerance = 0.001;  // m
 
-// A joint's range as it is sampled: finite, one turn where nothing limits it.
+// Range of a joint for sampling and proofs. Always finite: one turn, or 10 m each way, for a joint without limits.
 struct SampledRange {
   double lower = 0;  // rad or m
   double upper = 0;
-  bool whole = true;  // false: the joint can reach postures outside of it, so that nothing can be proved
+  bool whole = true;  // false: the joint can leave the range, so that nothing can be proved
 };
 [[nodiscard]] SampledRange sampled_range(const CompiledRobot& robot, std::size_t joint);
 
 using SlotSet = std::bitset<kMaxRobots>;
 
-// Robots with a joint that was seen outside of its range: nothing is proved about these. One thread.
+// Collects the robots that have left their joint ranges; nothing is proved about them. One thread.
 class RangeWatch {
  public:
-  // Takes the positions by slot. True: another robot has left its ranges, so that the pairs must be derived again.
+  // `q`: positions by slot. Returns true if a further robot has left its ranges: the pairs must then be derived again.
   bool note(const CompiledCell& cell, std::span<const JointValues> q);
   void clear() { beyond_.reset(); }
   [[nodiscard]] const SlotSet& beyond() const { return beyond_; }

@@ -12,9 +12,9 @@ namespace cellmirror::collision {
 
 namespace {
 
-// What rounding in poses, distances and bounds may add up to, m: far above it for any machine that fits in a hall.
+// m; far above the rounding errors of poses, distances and bounds for any machine that fits in a hall.
 constexpr double kProofSlack = 1e-6;
-// Depths of convex bodies come from an iteration that ends near the true value.
+// Share of a depth that counts: the depth of convex bodies comes from an iteration that ends near the true value.
 constexpr double kDepthShare = 0.99;
 
 std::array<Eigen::Vector3d, 8> corners_of(const OrientedBox& box) {
@@ -42,8 +42,8 @@ std::pair<MotionBound::JointBox, MotionBound::JointBox> halves(const MotionBound
   return out;
 }
 
-// Divides the range level by level until `decide` (of the motion within the box) calls every box proved, or one
-// refuted. `decide` adds to `tests` what it cost.
+// Halves the range level by level until `decide` has proved every box or refuted one. `decide` gets the motion within
+// the box, and adds the number of its tests to `tests`.
 template <class Decide>
 ProofResult divide(MotionBound& bound, int most_tests, Decide decide) {
   ProofResult result;
@@ -64,7 +64,7 @@ ProofResult divide(MotionBound& bound, int most_tests, Decide decide) {
       auto [lower, upper] = halves(box, widest);
       next.push_back(std::move(lower));
       next.push_back(std::move(upper));
-      // Each of these needs at least one test.
+      // Each of these boxes needs at least one test.
       if (result.tests + static_cast<int>(next.size()) > most_tests) return result;
     }
     open.swap(next);
@@ -77,7 +77,7 @@ bool ranges_are_whole(const RelativeMotion& motion) {
   return std::ranges::all_of(motion.variables, &SampledRange::whole);
 }
 
-// Greatest depth of one part in another, m; negative where nothing touches.
+// Greatest depth of one part in another, m; negative without contact.
 class BodyDepth {
  public:
   BodyDepth(const Body& a, const Body& b) : a_(a), b_(b) {}
@@ -150,7 +150,7 @@ MotionBound::MotionBound(const RelativeMotion& motion, const Body& a, const Body
   }
 }
 
-// How far a linear joint carries its link, m.
+// Greatest displacement by a linear joint, m; 0 for other joints.
 double MotionBound::extent(const JointChain::Link& link) const {
   if (link.kind != JointKind::prismatic) return 0;
   const SampledRange& range = motion_.variables[link.variable];
@@ -180,7 +180,7 @@ Pose MotionBound::walk(const JointChain& chain, std::span<const double> values, 
   return X * chain.X_tail;
 }
 
-// `others`: how far the joints between this one and the body move it.
+// Displacement of a body by one joint, m. `others`: its displacement by the joints between this one and the body.
 double MotionBound::moved(const Step& step, double half, const Corners& corners, double others, double most) {
   if (step.link->kind == JointKind::prismatic) return half * step.axis.norm();
   double reach = 0;
@@ -212,7 +212,8 @@ double MotionBound::compute(const JointBox& box) {
     step->to_b = moved(*step, half(*step), corners_b, others, step->most_to_b);
     others += step->to_b;
   }
-  // A joint changes the distance by what it moves either body, seen from the other: the lesser counts.
+  // A joint changes the distance by at most the displacement of either body in the frame of the other: the lesser
+  // counts.
   std::ranges::fill(by_variable_, 0.0);
   double sum = 0;
   for (const Step& step : steps_) {

@@ -1,6 +1,6 @@
 // Proves for every posture within the joint ranges that two bodies stay apart, or that they always touch: the ranges
-// are divided into boxes until in each the distance (or the depth) at its centre exceeds what the motion within the box
-// can change.
+// are divided into boxes until the distance (or the depth) at the centre of each box exceeds the largest change that
+// the motion within the box can cause.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,9 +14,9 @@
 
 namespace cellmirror::collision {
 
-// Postures tried for one proof. Beyond it the pair stays undecided, and is tested.
+// Most tests for one proof. Beyond this number the pair stays undecided, and is tested at run time.
 inline constexpr int kMostApartTests = 6'000;
-inline constexpr int kMostTouchTests = 2'000;  // contacts of parts, which take longer
+inline constexpr int kMostTouchTests = 2'000;  // with meshes, whose contacts take longer
 inline constexpr int kMostConvexTouchTests = 50'000;
 
 enum class Proof : std::uint8_t { proved, refuted, undecided };
@@ -26,7 +26,7 @@ struct ProofResult {
   int tests = 0;  // postures or contacts that were computed
 };
 
-// How far a motion within a box of joint positions can carry two bodies against each other. `motion` outlives it.
+// Upper bound of the relative displacement of two bodies within a box of joint positions. `motion` outlives it.
 class MotionBound {
  public:
   MotionBound(const RelativeMotion& motion, const Body& a, const Body& b);
@@ -38,12 +38,12 @@ class MotionBound {
   };
   [[nodiscard]] JointBox whole_range() const;
 
-  // m: at most this far a point of one body moves, seen from the other, between the centre of the box and any posture
-  // within it, one joint after the other.
+  // Returns the bound in m: no point of one body moves farther in the frame of the other between the centre of the box
+  // and any posture within it. It is the sum over the joints, moved one after the other.
   double compute(const JointBox& box);
-  // Of the last compute(): at the centre of the box.
+  // Pose of B in A at the centre of the box of the last compute().
   [[nodiscard]] const Pose& X_AB() const { return X_AB_; }
-  // Of the last compute(): the variable that contributes most; -1: none contributes.
+  // The variable that contributed most to the last compute(); -1: none contributed.
   [[nodiscard]] int widest() const;
 
  private:
@@ -55,7 +55,7 @@ class MotionBound {
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
     double most_to_a = 0;  // m, from its axis to any point of the body, in any posture
     double most_to_b = 0;
-    double to_a = 0;  // m, how far it moves points of the body within the box
+    double to_a = 0;  // m, displacement of a by this joint within the box
     double to_b = 0;
   };
 
@@ -71,9 +71,9 @@ class MotionBound {
   Pose X_AB_ = Pose::Identity();
 };
 
-// More than `margin` (m) apart in every posture. Refuted: a posture was found in which they are not.
+// Proves that the bodies stay more than `margin` (m) apart in every posture. Refuted: a posture contradicts it.
 [[nodiscard]] ProofResult prove_apart(const RelativeMotion& motion, const Body& a, const Body& b, double margin);
-// Touching in every posture. Refuted: a posture was found in which they do not touch.
+// Proves that the bodies touch in every posture. Refuted: a posture contradicts it.
 [[nodiscard]] ProofResult prove_touching(const RelativeMotion& motion, const Body& a, const Body& b);
 
 }  // namespace cellmirror::collision

@@ -46,7 +46,7 @@ struct Pair {
   std::uint32_t a = 0;  // index of a body; a < b
   std::uint32_t b = 0;
   PairState state = PairState::tested;
-  std::string reason;  // for people: why it is left out, or what was found and not proved
+  std::string reason;  // for people: why the pair is left out, or a result of sampling that is not proved
 };
 
 // For one compiled cell. Immutable once made, shared between threads.
@@ -62,9 +62,9 @@ struct PairTable {
   std::vector<std::string> doubts;  // geometry that should be tested and cannot be, in words
 };
 
-// Makes pair tables. Remembers by component what it found out, so that neither the second robot of a kind nor the next
-// revision of the cell is examined again. The same answer on every machine. One thread; takes up to some seconds for a
-// robot of a new kind.
+// Makes pair tables. Remembers its findings by component, so that neither the second robot of a kind nor the next
+// revision of the cell is examined again. The results are the same on every machine. One thread; can take several
+// seconds for a new kind of robot.
 class PairDerivation {
  public:
   explicit PairDerivation(std::shared_ptr<geometry::SolidLibrary> solids);

@@ -30,7 +30,7 @@ class Sampler {
   Sampler(const RelativeMotion& motion, const Body& a, const Body& b)
       : motion_(motion), proximity_(a, b), values_(motion.variables.size()), nearest_(values_) {}
 
-  // What the postures suggest, not more than that.
+  // Returns the state that the sampled postures suggest; it is not proved.
   PairState run(bool may_be_never) {
     for (int i = 0; i < kSampledPostures; ++i) {
       anywhere();
@@ -95,7 +95,7 @@ PairFinding examine(const RelativeMotion& motion, const Body& a, const Body& b, 
     if (result.proof == Proof::refuted) return finding;
     if (result.proof == Proof::proved) finding.state = suggested;
     finding.reason = result.proof == Proof::proved
-                         ? fmt::format("proved: nowhere within the joint ranges nearer than {:.3f} m", kNeverMargin)
+                         ? fmt::format("proved: never nearer than {:.3f} m within the joint ranges", kNeverMargin)
                          : fmt::format("never nearer than {:.3f} m in {} sampled postures, which is not proved",
                                        sampler.least(), kSampledPostures + kRefinedPostures);
   }

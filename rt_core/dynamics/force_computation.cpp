@@ -158,8 +158,8 @@ void ForceComputation::compute_contact(const HapticState* haptic, const Instrume
   out.X_WT = tcp_poses(cell_->robots[robot], poses_).X_WT;
 }
 
-// Of a robot without masses: what its drives need against the wrench at the TCP, -J^T w (Siciliano et al., Robotics,
-// 3.8). After compute_contact(), which has placed the nodes.
+// Computes the drive efforts of a robot without masses against the wrench at the TCP: -J^T w (Siciliano et al.,
+// Robotics, 3.8). Call it after compute_contact(), which computes the poses.
 void ForceComputation::compute_joints_of_load(const CompiledRobot& robot, RobotForces& out) {
   const Eigen::Vector3d force_W = out.X_WT.linear() * out.tcp_T.force;
   const Eigen::Vector3d torque_W = out.X_WT.linear() * out.tcp_T.torque;

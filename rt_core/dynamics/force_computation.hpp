@@ -43,10 +43,10 @@ class ForceComputation {
 
   // True where the mechanisms are other ones than before.
   bool take_cell(const std::shared_ptr<const CompiledCell>& cell);
-  // Of each robot with masses the force at the TCP is that of the contact of its haptic device, if it has one, else of
-  // the tissue that it touches, and of what is attached at or beyond the TCP's link (RobotMechanism::load).
-  // Robots with masses, with the instrument of a haptic device or in tissue, at `time`. `motions` are those of the
-  // robots of the cell, in its order; `haptics` the devices; `loads` of tissue, null: none. After take_cell().
+  // Computes the robots with masses, with the instrument of a haptic device, or in tissue, at `time`. The force at the
+  // TCP is the contact force of the haptic device, else that of tissue; for a robot with masses also the load that is
+  // attached at or beyond the TCP's link (RobotMechanism::load). `motions`: of the robots of the cell, in its order;
+  // `haptics`: the devices; `loads`: of tissue on instruments, null: none. Call it after take_cell().
   void compute(Timestamp time, std::span<const RobotMotion> motions, std::span<const HapticState> haptics,
                const InstrumentLoads* loads, ForceState& state);
 

@@ -35,7 +35,7 @@ class PlausibilityCheck {
  public:
   // Forgets the values so far. Without bounds everything is plausible.
   void begin(const PlausibilityBounds& bounds) CELL_RT;
-  void forget() CELL_RT { joints_ = {}; }  // the values so far
+  void forget() CELL_RT { joints_ = {}; }  // discards the values so far
   PlausibilityVerdict check(std::size_t joint, const StreamValue& value) CELL_RT;
   // When a value of the joint came last, plausible or not.
   [[nodiscard]] Timestamp last_heard(std::size_t joint) const CELL_RT { return joints_[joint].heard; }

@@ -48,10 +48,10 @@ struct CanChannelStatus {
   std::uint64_t error_frames = 0;
   std::uint64_t reopened = 0;  // number of recoveries
   std::string last_error;
-  std::string waits_for;  // the interface without which it is not open yet, or not any more; empty: none
+  std::string waits_for;  // the missing interface, before the first opening or after a loss; empty: none
 };
 
-// `again`: a log begins again; what came before has nothing to do with what comes now.
+// `again`: a log starts another pass; its frames are unrelated to those before.
 enum class CanReceive : std::uint8_t { frame, timeout, down, end, again };
 
 // All calls on one thread at a time. The channel recovers from ENETDOWN, a removed interface and the like: meanwhile
@@ -59,8 +59,8 @@ enum class CanReceive : std::uint8_t { frame, timeout, down, end, again };
 class CanChannel {
  public:
   virtual ~CanChannel() = default;
-  // Waits for the next frame, at most `timeout`. `end`: a log was played to its end. `again` comes once for each pass
-  // behind the first.
+  // Waits for the next frame, at most `timeout`. `end`: a log was played to its end. `again`: once at the
+  // beginning of each pass after the first.
   virtual CanReceive receive(ReceivedCanFrame& frame, Nanoseconds timeout) = 0;
   // Never waits. False where the frame could not be sent (counted).
   virtual bool send(const CanFrame& frame) = 0;

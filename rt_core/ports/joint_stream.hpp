@@ -31,7 +31,7 @@ inline constexpr std::size_t kDataStates = 7;
 // Joint values that one source sent for one robot at one instant. SI: rad, rad/s, Nm for revolute joints, m, m/s, N for
 // prismatic ones, after scale, sign and offset of the cell file. Index = the joint's number in the robot.
 struct JointSample {
-  // As the sequence: the source begins again, so this value is not compared with those before.
+  // Value of `sequence` after a restart of the source: the sample is not compared with earlier ones.
   static constexpr std::uint64_t kBeginsAnew = ~std::uint64_t{0};
 
   Timestamp receive_time;      // when its last byte was taken from the operating system
@@ -63,7 +63,7 @@ struct JointStreamStatus {
   std::uint64_t rejected = 0;  // messages or values refused
   double rate_hz = 0;          // samples over the last second
   std::string condition;       // one line, e.g. "operational", "bus-off, waiting for the bus", "no publisher"
-  std::string waits_for;       // what is missing of this machine, e.g. "can0"; it is tried again until it is there
+  std::string waits_for;       // missing resource of this machine, e.g. "can0"; the stream retries until it appears
   std::vector<std::pair<std::string, std::string>>
       details;                           // e.g. {"node 3", "operation enabled"}, {"last EMCY", "node 3 0x8611 ..."}
   std::vector<std::string> last_errors;  // newest last, bounded

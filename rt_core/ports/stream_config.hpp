@@ -62,8 +62,8 @@ struct Cia402NodeConfig {
   double velocity_scale = 0.0;  // rad/s (m/s) a unit of 0x606C; 0: same increments a second as `scale`
   double torque_scale =
       0.0;  // Nm (N) a unit of 0x6077 (often a thousandth of the rated torque); 0: effort is not known
-  // The joint turns without end: 0x6064 goes on where it wraps, at its bits or at the ends of the range (0x607B of the
-  // drive; both 0: it has none).
+  // True for a continuous joint: 0x6064 is unwrapped where it overflows, at its width in bits or at the ends of the
+  // range (0x607B of the drive; both 0: no range).
   bool turns = false;
   std::int64_t range_lower = 0;
   std::int64_t range_upper = 0;
@@ -100,7 +100,7 @@ struct DbcSignalConfig {
   double scale = 1.0;
   double offset = 0.0;
   bool scale_given = false;  // the cell file says the scale, so that 1 is meant
-  bool turns = false;        // the joint turns without end: an integer goes on where it wraps
+  bool turns = false;        // continuous joint: an integer is unwrapped where it overflows
   Place place = {};          // of the signal's name
   Place message_place = {};  // of the message's name
 };
@@ -155,7 +155,7 @@ struct RtdeJointConfig {
   std::size_t number = 0;  // of the controller's joints, from 0: the base
   double scale = 1.0;      // value = controller's * scale + offset
   double offset = 0.0;
-  double torque_nm_per_a = 0.0;  // effort = actual_current * this; 0: the moment that the controller aims at
+  double torque_nm_per_a = 0.0;  // effort = actual_current * this; 0: effort = the target moment of the controller
 };
 
 struct RtdeStreamConfig {

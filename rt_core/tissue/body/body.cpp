@@ -86,28 +86,31 @@ Result<void> check_filling(const ObjectDescription& d, double volume) {
               "set a smaller element_size_m: at most half of the thickness");
 }
 
-// Whether one tetrahedron of a file needs far more mass for a stable step than others of its material do: a sliver.
+// Fails if a tetrahedron of a file needs far more mass for a stable step than most others: it is a sliver.
 Result<void> check_masses(const ObjectDescription& d, const RestMesh& mesh, const BodyState& now) {
   constexpr double kMostOverMedian = 100;
   const std::span<const ElementState> states = now.elements.states();
   if (d.volume.tetrahedra.empty() || states.empty()) return {};
-  // By the shape alone: stiffer material needs more everywhere.
-  std::vector<double> by_shape;
-  for (const ElementState& s : states)
-    by_shape.push_back(s.mass_factor * s.material.density_kg_m3 / s.material.youngs_modulus_pa);
-  const auto worst = std::ranges::max_element(by_shape);
-  const auto element = static_cast<std::size_t>(worst - by_shape.begin());
-  const double largest = *worst;
-  const auto middle = by_shape.begin() + static_cast<std::ptrdiff_t>(by_shape.size() / 2);
-  std::ranges::nth_element(by_shape, middle);
-  const double factor = states[element].mass_factor;
-  if (factor <= kMostOverMedian || largest <= kMostOverMedian * *middle) return {};
+  // The influence of the shape alone: stiffer material needs more mass everywhere.
+  const auto by_shape = [](const ElementState& s) {
+    return s.mass_factor * s.material.density_kg_m3 / s.material.youngs_modulus_pa;
+  };
+  std::vector<double> all;
+  for (const ElementState& s : states) all.push_back(by_shape(s));
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::ranges::nth_element(all, middle);
+  const auto sliver = std::ranges::find_if(states, [&](const ElementState& s) {
+    return s.mass_factor > kMostOverMedian && by_shape(s) > kMostOverMedian * *middle;
+  });
+  if (sliver == states.end()) return {};
+  const auto element = static_cast<std::size_t>(sliver - states.begin());
+  const double factor = sliver->mass_factor;
   const std::uint32_t tetrahedron = now.topology.elements()[element].tetrahedron;
   Eigen::Vector3d at = Eigen::Vector3d::Zero();
   for (const std::uint32_t node : mesh.tetrahedra[tetrahedron].nodes) at += 250.0 * mesh.nodes[node];
   return fail(
-      fmt::format("{}: tetrahedron {} at ({:.1f}, {:.1f}, {:.1f}) mm in the world is so flat that it would need {:.3g} "
-                  "times its mass for a stable step, more than {:g} times as much as most others",
+      fmt::format("{}: tetrahedron {} at ({:.1f}, {:.1f}, {:.1f}) mm in the world is too flat: it would need {:.3g} "
+                  "times its mass for a stable step; at most {:g} times as much as most others is allowed",
                   d.name, tetrahedron + 1, at.x(), at.y(), at.z(), factor, kMostOverMedian),
       "let the mesher remove slivers (Gmsh: Mesh.Optimize, Mesh.OptimizeNetgen)");
 }

@@ -50,7 +50,7 @@ void release_grip(Instrument& instrument, EventLog& log) {
   const int object = static_cast<int>(instrument.held.front().point.object);
   instrument.held.clear();
   instrument.slipping = false;
-  // Of the step before: in this one it has not been computed.
+  // The force of the previous step, because that of this step is not computed yet.
   log.add(TissueEventKind::release, {.instrument = instrument.slot, .object = object}, instrument.X_end.translation(),
           instrument.held_by);
 }

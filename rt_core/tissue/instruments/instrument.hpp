@@ -74,8 +74,8 @@ struct Instrument {
 
   // --- what it feels ---
   Eigen::Vector3d force = Eigen::Vector3d::Zero();       // N, of this step, on the instrument
-  Eigen::Vector3d pull = Eigen::Vector3d::Zero();        // N, of this step, by what the jaws hold
-  double held_by = 0;                                    // N, size of the pull in the last step that ended
+  Eigen::Vector3d pull = Eigen::Vector3d::Zero();        // N, of this step, part of `force`: by the tissue in the jaws
+  double held_by = 0;                                    // N, magnitude of the pull in the last completed step
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();      // Nm about the tool centre point
   Eigen::Matrix3d directions = Eigen::Matrix3d::Zero();  // sum of n n^T weighted with force, N
   double depth = 0;                                      // m, of the deepest contact

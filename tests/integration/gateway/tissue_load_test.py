@@ -1,4 +1,4 @@
-"""The force of soft tissue on an instrument that SCRIPT moves, in a cell without haptic devices: wherever forces are told."""
+"""Outputs of the force of soft tissue on an instrument that SCRIPT moves, in a cell without haptic devices."""
 
 import ctypes
 import json
@@ -31,19 +31,19 @@ class TissueLoad(unittest.TestCase):
         self.assertEqual(answer.returncode, 0, f"{command}: {answer.stderr}")
 
     def felt(self):
-        """N, by the table of tissue in the status."""
+        """Returns the force on the instrument, in N, from the tissue section of the status."""
         instruments = self.scratch.status()["tissue"]["instruments"]
         return next((norm(one["force_n"]) for one in instruments if one["robot"] == ROBOT), 0.0)
 
     def push_into_the_liver(self):
-        """Forward, until it holds against the instrument."""
+        """Moves the instrument forward until the liver resists."""
         for _ in range(40):
             if g.eventually(lambda: self.felt() > 0.6, 0.5):
                 return
             self.done(f"POS_ROB {ROBOT} JOINT_INC 0 0 3")
         self.fail(self.scratch.status()["tissue"]["instruments"])
 
-    def test_it_is_told_whoever_moves_the_instrument(self):
+    def test_every_output_of_forces_has_the_force_of_tissue(self):
         scratch, done, felt = self.scratch, self.done, self.felt
         key = unused_key()
 
@@ -77,7 +77,7 @@ class TissueLoad(unittest.TestCase):
         # The third joint slides along the shaft: the tissue pushes back against it.
         self.assertGreater(abs(plain_values()[5] - free[5]), 0.2, plain_values())
 
-    def test_what_it_does_is_in_the_log_and_in_recordings(self):
+    def test_tissue_events_are_in_the_log_and_in_recordings(self):
         file = self.scratch.root / "events.mcap"
         recorder = g.Process([g.BIN / "cellmirror", "record", "-o", file, "--instance", self.scratch.instance], self.scratch.environment)
         self.addCleanup(recorder.close)

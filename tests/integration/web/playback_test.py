@@ -219,7 +219,7 @@ class Controls(PlaybackCase):
 
 
 def listening_at(port):
-    """The local addresses, in hexadecimal, at which anybody listens on this TCP port."""
+    """Returns the local addresses, in hexadecimal, of all listeners on this TCP port."""
     found = []
     for table in ("/proc/net/tcp", "/proc/net/tcp6"):
         for line in pathlib.Path(table).read_text().splitlines()[1:]:
@@ -230,7 +230,7 @@ def listening_at(port):
 
 
 class StrangersFile(unittest.TestCase):
-    """A recording whose cell file opens the page to everybody, and whose cell lies in a folder that is not attached."""
+    """Recordings from a stranger: a cell file that opens the page to every machine, and a path on this machine."""
 
     def setUp(self):
         self.scratch = g.Scratch()
@@ -245,7 +245,7 @@ class StrangersFile(unittest.TestCase):
         gateway.close()
         return file
 
-    def test_its_web_table_opens_nothing(self):
+    def test_replay_ignores_the_web_table_of_the_recording(self):
         with self.scratch.cell_file.open("a") as cell:
             # Disabled, so that the gateway that records does not listen there.
             cell.write('\n[web]\nenabled = false\naddress = "0.0.0.0"\nallow_remote = true\nport = 28431\norigins = ["https://evil.example"]\n')
@@ -262,14 +262,14 @@ class StrangersFile(unittest.TestCase):
         self.assertEqual(page.ask("/api/status", headers={"Origin": "https://evil.example"})[0], 403)
         self.assertEqual(page.ask("/api/status", headers={"Host": "evil.example"})[0], 421)
 
-    def test_a_path_in_it_is_not_opened(self):
+    def test_replay_does_not_open_a_path_from_the_recording(self):
         file = self.record("--attach-mb", "0")
         self.assertTrue(self.scratch.cell_file.is_file(), "the file that the recording names is there")
         for arguments in (("--headless",), ("--cell", str(self.scratch.cell_file))):
             refused = self.scratch.cellmirror("replay", str(file), *arguments)
             self.assertEqual(refused.returncode, 1, refused.stdout)
             self.assertIn("name the cell file with --recorded-cell", refused.stderr)
-            self.assertIn(str(self.scratch.cell_file), refused.stderr, "where it was, for people")
+            self.assertIn(str(self.scratch.cell_file), refused.stderr, "the message gives the recorded path")
         instance = "p" + os.urandom(6).hex()
         named = self.scratch.cellmirror("replay", str(file), "--headless", "--speed", "10", "--instance", instance, "--recorded-cell",
                                         str(self.scratch.cell_file))

@@ -102,8 +102,8 @@ TEST_F(SharedServer, LeavesWebSocketsToOtherUsers) {
   EXPECT_EQ(WEXITSTATUS(status), 0) << "1: it was refused; 2: it could not become another user";
 }
 
-// 12,000 a second were once looked at, without a word in the log.
-TEST_F(SharedServer, LooksAtFewWrongTokensOfAUserAndDelaysNoOther) {
+// The server once checked 12,000 wrong tokens a second and logged nothing.
+TEST_F(SharedServer, ChecksFewWrongTokensOfAUserAndDelaysNoOtherUser) {
   if (::geteuid() != 0) GTEST_SKIP() << "skipped: needs root, to act as another user";
   const int port = sut->port();
   const auto post = [port](const std::string& authorization) {
@@ -120,20 +120,20 @@ TEST_F(SharedServer, LooksAtFewWrongTokensOfAUserAndDelaysNoOther) {
   };
   const std::string first = post(wrong_bearer);
   EXPECT_TRUE(first.starts_with("HTTP/1.1 401 ")) << first;
-  EXPECT_EQ(count("401", {}, 100), 100) << "no token is no guess";
+  EXPECT_EQ(count("401", {}, 100), 100) << "a request without a token is not a guess";
   const int looked_at = count("401", wrong_bearer, 100);
-  // One more each ten seconds, on a slow machine too.
+  // A slow machine may check one more every ten seconds.
   EXPECT_LT(looked_at, 20);
   const std::string refused = post(wrong_bearer);
   EXPECT_TRUE(refused.starts_with("HTTP/1.1 429 ")) << refused;
   EXPECT_NE(refused.find("\r\nRetry-After: "), std::string::npos) << refused;
   EXPECT_NE(refused.find("too many wrong tokens from your address"), std::string::npos) << refused;
-  // In each other way that a token can be shown.
+  // The same holds for every other way to send a token.
   EXPECT_GT(count("429", "Authorization: Basic YTpi\r\n", 10), 0);
   EXPECT_EQ(open("Authorization: Bearer guess\r\n"), "HTTP/1.1 429 Too Many Requests");
   EXPECT_EQ(open("Sec-WebSocket-Protocol: cellmirror.live, cellmirror.token.guess\r\n"),
             "HTTP/1.1 429 Too Many Requests");
-  ASSERT_EQ(open(), kOpened) << "looking needs no token";
+  ASSERT_EQ(open(), kOpened) << "viewing needs no token";
   clients.back()->say(R"({"do": "hello", "token": "guess"})");
   EXPECT_FALSE(clients.back()->read_until("too many wrong tokens from your address").empty());
   EXPECT_GT(sut->status().unread_tokens, 50U);

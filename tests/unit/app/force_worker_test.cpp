@@ -205,7 +205,7 @@ TEST_F(ForceComputationTest, TakesTheForceOfTissueOnARobotThatNoDeviceMoves) {
                   .torque_T = Eigen::Vector3d(0, 0, 0.5)}};
   EXPECT_NEAR(computed().joints[0].effort, 10.0 * kG + 20.0, 1e-12);
   EXPECT_EQ(state.robots[0].tcp_T.force.z(), -20.0);
-  // A device that moves it knows better.
+  // The force of a haptic device takes precedence.
   tick.haptics[1].phase = HapticPhase::active;
   tick.haptics[1].slot = static_cast<std::uint8_t>(cell->robot("LIFTER")->slot());
   tick.haptics[1].force_E = Eigen::Vector3d(0, 0, -3);
@@ -215,7 +215,8 @@ TEST_F(ForceComputationTest, TakesTheForceOfTissueOnARobotThatNoDeviceMoves) {
   EXPECT_NEAR(computed().joints[0].effort, 10.0 * kG, 1e-12) << "the load is too old";
 }
 
-// Three axes: up along z, about z, about y, each 1 m after the other; the TCP 1 m beyond the last, at x = 3.
+// Three axes, each 1 m after the other: linear along z, revolute about z, revolute about y. The TCP is 1 m beyond the
+// last axis, at x = 3.
 TEST_F(ForceComputationTest, GivesTheLoadOfTissueToTheJointsOfARobotWithoutMasses) {
   loads.posture_time = tick.time;
   loads.loads = {{.slot = static_cast<std::uint8_t>(cell->robot("ARM")->slot()),
@@ -237,8 +238,6 @@ TEST_F(ForceComputationTest, GivesTheLoadOfTissueToTheJointsOfARobotWithoutMasse
   ASSERT_EQ(written->efforts.size(), 3U);
   EXPECT_NEAR(written->efforts[1], 10.0, 1e-12);
 }
-
-;
 
 TEST_F(ForceComputationTest, GoesIntoThePlainBuffersOfRobots) {
   ASSERT_TRUE(cell->connect("Weight", "TOP", cell->start_positions()));

@@ -63,7 +63,7 @@ id = "UR"
 flange = "TIP"
 )";
 
-// A ball on an arm of 1 m that turns about z, `joint` being its range and kind.
+// A ball on an arm of 1 m that turns about z. `joint`: the type and range of its joint.
 std::string turning_ball(const std::string& joint) {
   return R"(
 geometry = [{ name = "post", sphere_m = 0.1 }]
@@ -210,7 +210,7 @@ abstract = "long.mpc"
 }
 
 TEST_F(PairProofTest, LeavesOutAsTouchingOnlyWhatIsProved) {
-  // A ball within a block along its whole way, and one that leaves it by less than a sample would find.
+  // The ball stays within Block along its whole way; it leaves Far by 0.2 mm at the end of its range.
   files->add("inside.mpc", sledge_from("[-0.5, 0.5]"));
   build(R"(
 [[node]]
@@ -245,7 +245,7 @@ TEST_F(PairProofTest, ProvesNothingAboutARobotBeyondItsRanges) {
   EXPECT_EQ(state("Arm.J_1.J_2", "Arm.J_1.J_2.J_3.J_4"), PairState::never);
 }
 
-// Searches the smallest distance from many starts; whatever is left out must stay apart by the margin there.
+// Searches for the smallest distance from many start postures: each pair that is left out must keep the margin.
 TEST_F(PairProofTest, FindsNoPostureAgainstAProof) {
   std::mt19937_64 dice(11);  // NOLINT: the same numbers in every run
   std::uniform_real_distribution<double> unit(-1.0, 1.0);

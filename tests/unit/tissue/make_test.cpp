@@ -105,7 +105,7 @@ TEST(TissueMake, TetrahedraThatNoBodyHasAreRefused) {
   refused(d, "2000000 tetrahedra");
 }
 
-// A corner of one tetrahedron is moved nearly into the plane of its others, which leaves its neighbours sound.
+// A sound block, and beside it one tetrahedron whose fourth corner is nearly in the plane of the others.
 TEST(TissueMake, SliversAreRefusedWithTheirPlace) {
   ObjectDescription d = block(Eigen::Vector3d(0.02, 0.02, 0.02), {2, 2, 2});
   const auto add_sliver = [&d](double height) {

@@ -46,7 +46,7 @@ TEST(WorldGrip, lifts_a_free_body_and_feels_its_weight) {
   scene.step();
   EXPECT_EQ(scene.response(0).held, 0U);
   EXPECT_EQ(scene.count(TissueEventKind::release), 1);
-  EXPECT_NEAR(scene.state().events.back().value, weight, 0.3 * weight) << "N, that the jaws held";
+  EXPECT_NEAR(scene.state().events.back().value, weight, 0.3 * weight) << "the force that the jaws held, in N";
   scene.steps(100);
   const TissueView view = scene.view();
   EXPECT_LT(view.surfaces[0].vertices[0].z(), 0.0F) << "it falls";
