@@ -73,7 +73,7 @@ double read_scale(TableReader& reader, JointKind kind) {
   return scale.value_or(1.0);
 }
 
-// Increments at which the drive's position starts again (object 0x607B).
+// Position range of the drive (object 0x607B) in increments: its position wraps at the ends.
 void read_position_range(TableReader& reader, Cia402NodeConfig& node) {
   constexpr long long kMost = 0xFFFF'FFFF;
   const auto lower = reader.integer("position_range_min", -kMost, kMost);
@@ -81,12 +81,12 @@ void read_position_range(TableReader& reader, Cia402NodeConfig& node) {
   if (!lower && !upper) return;
   if (!lower || !upper || *lower >= *upper) {
     reader.error({}, "position_range_min and position_range_max are not a range",
-                 "give both, as object 0x607B of the drive has them");
+                 "set both, the smaller first, to the values of object 0x607B of the drive");
     return;
   }
   if (!node.turns && !node.joint_name.empty())
-    reader.error("position_range_min", fmt::format("{} is not a joint that turns without end", node.joint_name),
-                 "leave the range out, or make its type continuous");
+    reader.error("position_range_min", fmt::format("{} is not a continuous joint", node.joint_name),
+                 "remove the range, or set the type of the joint to continuous");
   node.range_lower = *lower;
   node.range_upper = *upper;
 }

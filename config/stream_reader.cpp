@@ -70,7 +70,7 @@ bool is_own_address(const std::string& address) {
     const decltype(wanted) any{};
     if (std::memcmp(&wanted, &any, sizeof any) == 0) return true;
     ifaddrs* list = nullptr;
-    if (getifaddrs(&list) != 0) return true;  // not known: no reason to warn
+    if (getifaddrs(&list) != 0) return true;  // unknown: do not warn
     bool found = false;
     for (const ifaddrs* entry = list; entry != nullptr && !found; entry = entry->ifa_next) {
       if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != family) continue;
@@ -94,9 +94,10 @@ std::optional<std::string> read_own_address(TableReader& reader, std::string_vie
     return std::nullopt;
   }
   if (!is_own_address(*address)) {
-    reader.warning(key, fmt::format("no network interface of this machine has the address {}", *address),
-                   "correct it, or ignore this where the cell runs on another machine or the interface comes up later; "
-                   "the addresses of this machine: ip address");
+    reader.warning(
+        key, fmt::format("no network interface of this machine has the address {}", *address),
+        "correct it ('ip address' lists the addresses of this machine), or ignore this if the cell runs on another "
+        "machine or the interface comes up later");
   }
   return address;
 }

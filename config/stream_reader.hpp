@@ -52,10 +52,11 @@ struct JointReference {
 [[nodiscard]] std::optional<std::string> read_topic(TableReader& reader, std::string_view key);
 // An IPv4 or IPv6 address as text, numeric.
 [[nodiscard]] bool is_address(std::string_view text);
-// Whether an interface of this machine has the numeric address now, or it is one of all of them (0.0.0.0, ::).
+// Returns true if an interface of this machine has the numeric address now, or the address means all interfaces
+// (0.0.0.0, ::).
 [[nodiscard]] bool is_own_address(const std::string& address);
-// The key's address, which is to be one of this machine: an error where it is not numeric, a warning where no interface
-// has it now. Nothing where the key is missing or refused.
+// Reads an address of this machine: an error if it is not numeric, a warning if no interface has it now. Returns
+// nothing if the key is missing or refused.
 [[nodiscard]] std::optional<std::string> read_own_address(TableReader& reader, std::string_view key);
 // Seconds in the key, within 0 and `max`; the value as nanoseconds.
 [[nodiscard]] std::optional<Nanoseconds> read_seconds(TableReader& reader, std::string_view key, double max,

@@ -11,7 +11,7 @@ namespace cellmirror {
 [[noreturn]] inline void toml_assertion_failed(const char* condition) { throw std::logic_error(condition); }
 }  // namespace cellmirror
 #define TOML_ASSERT(condition) ((condition) ? static_cast<void>(0) : ::cellmirror::toml_assertion_failed(#condition))
-// Of arrays and inline tables, each of which costs stack.
+// Limit for nested arrays and inline tables: the parser recurses for each level.
 #define TOML_MAX_NESTED_VALUES 32
 namespace cellmirror {
 inline constexpr int kMostNestedValues = TOML_MAX_NESTED_VALUES;

@@ -90,8 +90,8 @@ class WordBefore {
   bool equals_on_line_ = false;
 };
 
-// The parts of the dotted key of which `c` is a byte, counted by the dots between what separates keys. A number has one
-// dot at most.
+// Counts the parts of a dotted key by the dots since the last separator of keys or values. A number has at most one
+// dot.
 class KeyParts {
  public:
   static constexpr int kMost = 32;
@@ -114,9 +114,9 @@ struct Unreadable {
   std::string remedy;
 };
 
-// What must not reach toml++ 3.3. Outside of texts and comments TOML is ASCII: it holds some other characters for
-// impossible, with undefined behaviour. And each part of a dotted key becomes a table in a table, which it destroys by
-// recursion: a key with 160,000 parts overflows the stack.
+// Finds text that must not reach toml++ 3.3. Outside of strings and comments TOML is ASCII: some other characters cause
+// undefined behaviour in toml++. Each part of a dotted key becomes a nested table, which toml++ destroys recursively: a
+// key with 160,000 parts overflows the stack.
 std::optional<Unreadable> find_unreadable(std::string_view text) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   std::size_t at = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
@@ -129,11 +129,10 @@ std::optional<Unreadable> find_unreadable(std::string_view text) {
     }
     const char c = text[at];
     if (!key.add(c)) {
-      return Unreadable{
-          at,
-          fmt::format("a key has more than {} parts between dots; at most {} are read", KeyParts::kMost,
-                      KeyParts::kMost),
-          "write fewer tables in each other, or quote a name that has dots; the rest of the file was not read"};
+      return Unreadable{at,
+                        fmt::format("a key has more than {} parts between dots; at most {} are read", KeyParts::kMost,
+                                    KeyParts::kMost),
+                        "nest fewer tables, or quote a name that contains dots; the rest of the file was not read"};
     }
     const bool is_quote = c == '"' || c == '\'';
     at = is_quote && !word.lets_text_begin() ? at + 1 : step_over(text, at);
@@ -166,7 +165,7 @@ std::optional<toml::table> parse_toml(std::string_view text, const std::string& 
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
-    // It names its own macro.
+    // The parser's message names its macro; users need the limit.
     const bool too_deep = error.description().find("TOML_MAX_NESTED_VALUES") != std::string_view::npos;
     return refuse({file, static_cast<int>(error.source().begin.line), static_cast<int>(error.source().begin.column)},
                   too_deep ? fmt::format("lists and tables are nested more than {} deep; at most {} levels are read",

@@ -38,9 +38,9 @@ std::string read_page_address(TableReader& table, const std::string& otherwise) 
   const std::string address = given.value_or(otherwise);
   if (is_loopback(address)) {
     if (remote)
-      table.diagnostics().warning(table.place("allow_remote"),
-                                  fmt::format("allow_remote has no effect with the address {}", address),
-                                  "remove it, so that another address is refused until it is allowed on purpose");
+      table.diagnostics().warning(
+          table.place("allow_remote"), fmt::format("allow_remote has no effect with the address {}", address),
+          "remove it; otherwise a later change of the address opens the page to other machines");
   } else if (remote) {
     table.diagnostics().warning(
         table.place("address"),

@@ -29,7 +29,7 @@ enum class PackageType : std::uint8_t {
 // What the gateway asks for, in this order, and its types as the controller answers them.
 inline constexpr std::string_view kVariables = "timestamp,actual_q,actual_qd,robot_mode,safety_mode";
 inline constexpr std::string_view kVariableTypes = "DOUBLE,VECTOR6D,VECTOR6D,INT32,INT32";
-// The same with what older controllers do not have.
+// The same, plus the variables that older controllers do not have.
 inline constexpr std::string_view kAllVariables =
     "timestamp,actual_q,actual_qd,robot_mode,safety_mode,actual_current,target_moment,speed_scaling,runtime_state";
 inline constexpr std::string_view kAllVariableTypes =
@@ -41,12 +41,12 @@ struct RobotData {
   std::array<double, kJoints> qd{};  // rad/s
   std::int32_t robot_mode = 7;       // 7: running
   std::int32_t safety_mode = 1;      // 1: normal
-  // Of kAllVariables; else `has_all` is false.
+  // The following values are valid only if `has_all`: the package has kAllVariables.
   bool has_all = false;
   std::array<double, kJoints> current{};  // A
-  std::array<double, kJoints> moment{};   // Nm: what the controller aims at, without contact
-  double speed_scaling = 1;               // of the trajectory, 1: as programmed
-  std::uint32_t runtime_state = 0;        // of the program
+  std::array<double, kJoints> moment{};   // Nm: target of the controller, without contact forces
+  double speed_scaling = 1;               // of the trajectory; 1: programmed speed
+  std::uint32_t runtime_state = 0;        // state of the robot program
 };
 
 [[nodiscard]] std::string robot_mode_text(std::int32_t mode);
@@ -65,13 +65,13 @@ class PackageSplitter {
   void add(std::span<const std::uint8_t> bytes);
   // The next whole package; none: more bytes are needed, or broken().
   [[nodiscard]] std::optional<Package> next();
-  // A length below that of a head, or beyond that of any package: the stream cannot be divided any more.
+  // A length field is smaller than a head or larger than any package: the stream can no longer be divided.
   [[nodiscard]] bool broken() const { return broken_; }
   void clear();
 
  private:
   static constexpr std::size_t kMostWaiting = 1 << 20;
-  static constexpr std::size_t kLongestPackage = 8192;  // a data package has some hundred bytes, a text fewer
+  static constexpr std::size_t kLongestPackage = 8192;  // data and text packages have some hundred bytes
 
   std::vector<std::uint8_t> bytes_;
   std::size_t used_ = 0;
@@ -93,7 +93,7 @@ struct OutputsAnswer {
   std::string types;  // comma separated; NOT_FOUND where the controller does not know a variable
 };
 [[nodiscard]] std::optional<OutputsAnswer> decode_outputs(std::span<const std::uint8_t> payload);
-// Of kVariables or kAllVariables, by its length. None: another length or recipe.
+// Decodes a package of kVariables or kAllVariables, depending on its length. None: another length or recipe.
 [[nodiscard]] std::optional<RobotData> decode_data(std::span<const std::uint8_t> payload, std::uint8_t recipe);
 // The message of a text package and who sent it, as one printable line.
 [[nodiscard]] std::string decode_text(std::span<const std::uint8_t> payload);
@@ -107,7 +107,7 @@ struct OutputsRequest {
 [[nodiscard]] std::optional<OutputsRequest> decode_outputs_request(std::span<const std::uint8_t> payload);
 [[nodiscard]] Bytes accepted(PackageType type, bool yes);
 [[nodiscard]] Bytes outputs_answer(const OutputsAnswer& answer);
-// Of kAllVariables where the data have them.
+// Encodes kAllVariables if `data.has_all`, else kVariables.
 [[nodiscard]] Bytes data_package(const RobotData& data, std::uint8_t recipe);
 
 }  // namespace cellmirror::rtde

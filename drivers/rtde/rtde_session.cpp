@@ -12,12 +12,12 @@ namespace cellmirror::rtde {
 
 namespace {
 
-// The controller's clock may run as much ahead of ours between two packages.
+// Bound for the advance of the controller's clock over ours between two packages.
 constexpr double kMostAhead = 5.0;  // s
 constexpr unsigned kTimeBeginsAnewAfter = 3;
 constexpr unsigned kMostUnreadable = 20;
 
-// Nm in the joint's direction; 0: not known.
+// Effort in Nm, in the joint's direction; 0: unknown.
 double effort_of(const RtdeJointConfig& joint, const RobotData& data) {
   if (!data.has_all) return 0.0;
   const double moment =
@@ -92,7 +92,7 @@ void RtdeSession::take_outputs(std::span<const std::uint8_t> payload) {
   auto answer = decode_outputs(payload);
   if (phase_ != Phase::asking_outputs || !answer) return reject("an answer about outputs that was not expected");
   if (asked_for_all_ && answer->types != kAllVariableTypes) {
-    // An older controller: what every one has.
+    // An older controller: request only the variables that every controller has.
     asked_for_all_ = false;
     output_.send(outputs_request(config_.rate_hz, kVariables));
     return;
@@ -168,7 +168,7 @@ bool RtdeSession::is_in_time(double timestamp_s, Timestamp now) {
   others_ = follows ? others_ + 1 : 1;
   other_time_s_ = timestamp_s;
   if (others_ >= kTimeBeginsAnewAfter) {
-    controller_time_s_.reset();  // nothing is known to be missing
+    controller_time_s_.reset();  // so that the change is not counted as lost packages
     output_.message(fmt::format("the controller's time has changed by {:.3f} s", ahead));
     return true;
   }

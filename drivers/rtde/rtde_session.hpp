@@ -51,10 +51,10 @@ class RtdeSession {
   [[nodiscard]] std::int32_t robot_mode() const { return robot_mode_; }
   [[nodiscard]] std::int32_t safety_mode() const { return safety_mode_; }
   [[nodiscard]] Timestamp last_sample() const { return last_sample_; }
-  // Nothing where the controller does not give them.
+  // No value if the controller does not send it.
   [[nodiscard]] std::optional<double> speed_scaling() const { return speed_scaling_; }
   [[nodiscard]] std::optional<std::uint32_t> runtime_state() const { return runtime_state_; }
-  // When the newest package, or a part of one, came that made no sample, and why; never: the newest made one.
+  // Receive time of the newest package if it made no sample, and the reason; unknown: it made a sample.
   [[nodiscard]] Timestamp last_refused() const { return last_refused_; }
   [[nodiscard]] const std::string& why_refused() const { return why_refused_; }
 
@@ -64,12 +64,12 @@ class RtdeSession {
   void take_outputs(std::span<const std::uint8_t> payload);
   void take_start(std::span<const std::uint8_t> payload);
   void take_data(std::span<const std::uint8_t> payload, Timestamp now);
-  // Whether the stamp follows the one before. One that does not is refused; where more follow it, the controller's time
-  // has begun again.
+  // Returns true if the stamp follows the previous one. Refuses other stamps until three of them follow each other:
+  // then the controller's time has restarted.
   [[nodiscard]] bool is_in_time(double timestamp_s, Timestamp now);
   void count_lost(double timestamp_s);
   void note_sender(const RobotData& data);
-  // A package that nobody can make sense of: the bytes may be divided in the wrong places.
+  // Rejects an unreadable package. Too many in a row end the session: the bytes may be divided in the wrong places.
   void reject_package(std::string_view why);
   void refuse(std::string_view why);
   void reject(std::string_view why);
@@ -80,16 +80,16 @@ class RtdeSession {
   Phase phase_ = Phase::asking_version;
   bool failed_ = false;
   std::uint8_t recipe_ = 0;
-  bool asked_for_all_ = true;                // else for what every controller has
+  bool asked_for_all_ = true;                // false: asked for kVariables
   std::optional<double> controller_time_s_;  // of the newest package
-  std::optional<double> other_time_s_;       // of the newest one that was not in time
-  unsigned others_ = 0;                      // in a row that follow each other, but not the one before them
+  std::optional<double> other_time_s_;       // of the newest refused package
+  unsigned others_ = 0;                      // refused packages in a row that follow each other
   unsigned unreadable_ = 0;                  // packages in a row
   std::optional<double> speed_scaling_;
   std::optional<std::uint32_t> runtime_state_;
   Timestamp last_refused_;
   std::string why_refused_;
-  Timestamp now_;  // of the bytes under way
+  Timestamp now_;  // receive time of the bytes being processed
   SessionCounters counters_;
   std::int32_t robot_mode_ = 7;
   std::int32_t safety_mode_ = 1;

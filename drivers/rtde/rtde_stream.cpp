@@ -108,7 +108,7 @@ class RtdeStream final : public JointStream, private SessionOutput {
     Timestamp last_sample;
     Timestamp last_refused;
     std::string why_refused;
-    Timestamp heard;  // any bytes
+    Timestamp heard;  // receive time of the newest bytes
     std::optional<double> speed_scaling;
     std::optional<std::uint32_t> runtime_state;
     RateMeter rate;
@@ -120,11 +120,11 @@ class RtdeStream final : public JointStream, private SessionOutput {
     if (!report.connected) return report.problem;
     if (report.phase != RtdeSession::Phase::running) return "connected, waiting for the controller's answer";
     const bool sampled = report.last_sample.known() && now - report.last_sample <= config_.ages.stale_after;
-    // Packages that arrive and cannot be used are another thing than none.
+    // Unusable packages are reported as such, not as silence.
     if (!sampled && report.last_refused.known() && now - report.last_refused <= config_.ages.stale_after)
       return "connected, packages are refused: " + report.why_refused;
     if (!sampled && report.heard.known() && now - report.heard <= config_.ages.stale_after)
-      return "connected, bytes arrive that are not a whole package";
+      return "connected, the bytes that arrive are not a whole package";
     if (!report.last_sample.known()) return "connected, no data yet";
     if (!sampled) return fmt::format("connected, silent for {:.1f} s", seconds(now - report.heard));
     const std::string robot = robot_mode_text(report.robot_mode);

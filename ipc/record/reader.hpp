@@ -46,7 +46,7 @@ class Reader {
   [[nodiscard]] bool indexed() const { return indexed_; }
   [[nodiscard]] const std::string& why_not_indexed() const { return why_not_; }
   [[nodiscard]] const Faults& faults() const { return faults_; }
-  // Chunks of a scan that are in chunks(), but not in the counts: Limits::leave_out_beyond.
+  // Number of chunks that are in chunks() but not in the other counts (Limits::leave_out_beyond).
   [[nodiscard]] std::uint64_t chunks_left_out() const { return chunks_left_out_; }
 
  private:

@@ -13,7 +13,7 @@
 
 namespace cellmirror::mcap {
 
-// How far the reading of a file has come, in bytes. Called often.
+// Progress of reading a file, in bytes. Called often.
 using ReadProgress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
 // What a reader accepts. More than a recording of ours ever has.
@@ -21,11 +21,11 @@ struct Limits {
   std::uint64_t record_bytes = std::uint64_t{1} << 30;   // one record, e.g. an attachment
   std::uint64_t chunk_bytes = std::uint64_t{256} << 20;  // decompressed
   std::uint64_t summary_bytes = std::uint64_t{256} << 20;
-  // Of all compressed chunks that are read in one go, decompressed: this, or so many times the bytes of the file where
-  // that is more. 200 MB of zeros are 6 kB in a file.
+  // Limit for the decompressed size of all compressed chunks in one pass: the larger of decompressed_bytes and
+  // decompressed_ratio times the size of the file. 200 MB of zeros compress to 6 kB.
   std::uint64_t decompressed_bytes = std::uint64_t{1} << 30;
   std::uint64_t decompressed_ratio = 200;
-  // Of a scan: chunks beyond that are left out and counted; otherwise it fails there.
+  // A scan leaves out and counts chunks beyond this limit; if false, it fails at the first of them.
   bool leave_out_beyond = false;
   const ReadProgress* progress = nullptr;  // outlives the reader
 
@@ -72,8 +72,8 @@ class RecordStream {
 class RecordList {
  public:
   explicit RecordList(View bytes) : bytes_(bytes) {}
-  // None at the end, and where a length is wrong or the kind is 0, which no record has: ok() is false then. Offsets are
-  // in the list.
+  // Returns nothing at the end, and if a length is wrong or the opcode is 0, which is invalid: then ok() is false.
+  // Offsets are relative to the list.
   std::optional<RecordView> next();
   [[nodiscard]] bool ok() const { return ok_; }
   [[nodiscard]] std::size_t offset() const { return offset_; }

@@ -45,7 +45,7 @@ Result<View> ChunkOpener::open(const Chunk& chunk) {
             "the chunks up to here have more than {:.1f} GB decompressed, which is the limit for a file of {:.1f} MB",
             1e-9 * static_cast<double>(limits_.most_decompressed(file_bytes_)),
             1e-6 * static_cast<double>(file_bytes_)),
-        "if you know where the file is from, raise the limit: --decompressed-limit GB");
+        "if you trust the origin of the file, raise the limit: --decompressed-limit GB");
   }
   if (compressed) left_ -= chunk.uncompressed_size;
   auto content = decompressor_.decompress(chunk.compression, chunk.records, chunk.uncompressed_size);
@@ -71,7 +71,7 @@ class Scanner {
   std::optional<std::uint64_t> chunk_behind(std::uint64_t offset);
   void take(const RecordView& record);
   void take_chunk(const RecordView& record);
-  // A chunk that there is no room for.
+  // Handles a chunk beyond the limit of decompressed bytes.
   void refuse_or_leave_out(const Chunk& chunk, const RecordView& record, const Error& why);
   void take_message(const Message& message, std::uint64_t offset);
   // Of the data section or a chunk; false: it is none of these kinds.
@@ -94,7 +94,7 @@ class Scanner {
   bool in_chunk_ = false;
   std::set<std::uint16_t> chunk_channels_;
   bool has_header_ = false;
-  std::optional<Error> refused_;  // the scan ends
+  std::optional<Error> refused_;  // set: the scan ends with this error
 };
 
 void Scanner::take_message(const Message& message, std::uint64_t offset) {

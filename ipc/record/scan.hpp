@@ -28,7 +28,7 @@ class Faults {
     ++count_;
     if (!full()) kept_.push_back({offset, std::move(what)});
   }
-  // One more whose text is not needed; only where they are full(): a text each would take longer than the reading.
+  // Counts one more fault without a text; only if full(). Formatting every text would take longer than reading.
   void add_another() { ++count_; }
   [[nodiscard]] bool full() const { return kept_.size() >= kKept; }
   [[nodiscard]] const std::vector<Fault>& first() const { return kept_; }
@@ -85,7 +85,7 @@ class ChunkOpener {
   ChunkOpener(const Limits& limits, std::uint64_t file_bytes)
       : limits_(limits), file_bytes_(file_bytes), left_(limits.most_decompressed(file_bytes)) {}
   Result<View> open(const Chunk& chunk);
-  // The last failure was that this chunk and those before it have too many bytes, not that it is wrong.
+  // True if the last open() failed because of the limit of decompressed bytes, not because the chunk is faulty.
   [[nodiscard]] bool exhausted() const { return exhausted_; }
 
  private:
@@ -96,8 +96,8 @@ class ChunkOpener {
   Decompressor decompressor_;
 };
 
-// Fails where the source is no MCAP file at all, and where its chunks have more bytes than is accepted. All other
-// faults are in the report.
+// Fails if the source is not an MCAP file, and if its chunks exceed the limit of decompressed bytes. All other faults
+// are in the report.
 [[nodiscard]] Result<ScanReport> scan(const Source& source, const Limits& limits, Visitor& visitor);
 
 }  // namespace cellmirror::mcap

@@ -38,8 +38,8 @@ class AccessRules {
 // Of "Authorization: Bearer TOKEN"; empty: there is none.
 [[nodiscard]] std::string_view bearer_token(const HttpRequest& request);
 
-// The bearer token, or where the header Authorization has another scheme all of it with a mark before it, which no
-// token has; empty: there is none.
+// The bearer token. If the header Authorization has another scheme, the whole header after a mark that no token
+// contains, so that it counts as a wrong token. Empty: no credentials.
 [[nodiscard]] std::string shown_credentials(const HttpRequest& request);
 
 // Scripts in browsers cannot add headers to the opening of a WebSocket, but they can name subprotocols: this one, and

@@ -59,8 +59,7 @@ Answer too_many_wrong_tokens(ServerContext& context, int wait_s) {
   return answer;
 }
 
-// What the client shows in order to be allowed something; checked only where there is anything, so that others cost
-// nothing.
+// Checks the credentials of a client if it sent any; requests without credentials are not limited.
 TokenTries::Check check_shown(std::string_view shown, ServerContext& context, const Requester& from) {
   return shown.empty() ? TokenTries::Check() : check_token(context, shown, from.peer(), from.now);
 }

@@ -34,7 +34,7 @@ struct OpenWebSocket {
 };
 using Route = std::variant<Answer, Work, TakeSnapshot, TakeGeometry, ExecuteBody, OpenWebSocket>;
 
-// Whom the request is from: as of peer_of(), which is asked only where a token is to be checked.
+// Sender and time of a request. `peer` calls peer_of(), only if a token must be checked.
 struct Requester {
   std::function<std::string()> peer;
   Timestamp now;

@@ -53,7 +53,7 @@ struct ServerContext {
   std::shared_ptr<std::atomic<std::uint64_t>> snapshots = std::make_shared<std::atomic<std::uint64_t>>(0);
 };
 
-// Whether `given` is the token, in all the ways that a client can show it. `peer`: as of peer_of().
+// Checks and counts a token, whichever way the client sent it. `peer`: result of peer_of().
 inline TokenTries::Check check_token(ServerContext& context, std::string_view given, const std::string& peer,
                                      Timestamp now) {
   const TokenTries::Check checked = context.tries.check(given, context.options.token, peer, now);

@@ -21,7 +21,7 @@ double refilled(double left, double per_second, double most, Timestamp last, Tim
 std::string line_about(std::string_view who, std::uint64_t wrong, std::uint64_t unread, double over_s) {
   std::string out = fmt::format("{} wrong token{} from {}", wrong, wrong == 1 ? "" : "s", who);
   if (wrong + unread > 1) out += fmt::format(" within {:.0f} s", std::ceil(over_s));
-  if (unread > 0) out += fmt::format(", and {} more attempts that were refused unread", unread);
+  if (unread > 0) out += fmt::format(", and {} more attempts that were refused without a check", unread);
   return out;
 }
 
@@ -29,7 +29,7 @@ std::string line_about(std::string_view who, std::uint64_t wrong, std::uint64_t 
 
 std::string too_many_wrong_tokens_text(int wait_s) {
   return fmt::format(
-      "too many wrong tokens from your address: this one was not looked at; wait {} s, then send the token that "
+      "too many wrong tokens from your address: this one was not checked; wait {} s, then send the token that "
       "cellmirror page prints",
       wait_s);
 }

@@ -1,5 +1,4 @@
-// Wrong tokens by the peer that sent them: how many of a peer are looked at, and what is logged about them. Pure: time
-// is passed in. Never keeps a token. Server's thread.
+// Limits and reports wrong tokens per peer. Pure: time is passed in. Never stores a token. Server's thread.
 #pragma once
 
 #include <algorithm>
@@ -16,34 +15,34 @@
 
 namespace cellmirror::web {
 
-inline constexpr double kWrongTokensPerSecond = 0.1;   // of a peer
-inline constexpr double kWrongTokensAtOnce = 10;       // of a peer
-inline constexpr double kAllWrongTokensPerSecond = 5;  // of all peers; twice as many at once
-inline constexpr std::size_t kMostWrongPeers = 256;    // that are remembered
+inline constexpr double kWrongTokensPerSecond = 0.1;   // per peer
+inline constexpr double kWrongTokensAtOnce = 10;       // per peer
+inline constexpr double kAllWrongTokensPerSecond = 5;  // all peers together; burst of twice as many
+inline constexpr std::size_t kMostWrongPeers = 256;    // peers that are remembered
 
-// For the client.
+// Text of the refusal that the client gets.
 [[nodiscard]] std::string too_many_wrong_tokens_text(int wait_s);
 
 class TokenTries {
  public:
   enum class Verdict : std::uint8_t {
-    none,    // there is no token
-    right,   // it is the token
-    wrong,   // it is another one; counted
-    unread,  // not looked at: the peer has sent too many wrong ones
+    none,    // no token was sent
+    right,   // the token is right
+    wrong,   // the token is wrong; counted
+    unread,  // not checked: the peer has sent too many wrong tokens
   };
   struct Check {
     Verdict verdict = Verdict::none;
-    int wait_s = 0;  // of `unread`: before the next one is looked at
+    int wait_s = 0;  // for `unread`: time until the next token is checked
     [[nodiscard]] bool right() const { return verdict == Verdict::right; }
   };
 
-  // `peer`: as of peer_of(). A peer that has sent no wrong token is never refused, whatever others do; while all peers
-  // together send too many, each that has sent one is. A right token takes nothing off.
+  // `peer`: result of peer_of(). A peer that has sent no wrong token is never refused. While all peers together exceed
+  // their limit, every peer that has sent a wrong token is refused. A right token does not reset the counts.
   [[nodiscard]] Check check(std::string_view given, std::string_view token, const std::string& peer, Timestamp now);
 
-  // A line for the log about each peer that has sent wrong tokens: at the first one, then every ten seconds, at most
-  // kMostLines of them and one about all others.
+  // Lines for the log, one per peer that has sent wrong tokens: at the first token, then at most every kReportPeriod.
+  // At most kMostLines, and one about all other peers.
   [[nodiscard]] std::vector<std::string> take_reports(Timestamp now);
 
   static constexpr std::size_t kMostLines = 4;
@@ -51,31 +50,31 @@ class TokenTries {
 
  private:
   struct Peer {
-    double left = kWrongTokensAtOnce;  // as of `last`
+    double left = kWrongTokensAtOnce;  // allowance at the time `last`
     Timestamp last;
-    // Since the last line about it.
+    // Counts since the last line about this peer.
     std::uint64_t wrong = 0;
     std::uint64_t unread = 0;
-    Timestamp first;  // of those
-    Timestamp due;    // no line before
+    Timestamp first;  // time of the first of these attempts
+    Timestamp due;    // earliest time of the next line
   };
   using Peers = std::unordered_map<std::string, Peer>;
 
-  // How long until the peer's next token is looked at; zero or less: now.
+  // Time until the peer's next token is checked; zero: now.
   [[nodiscard]] double wait_s(const Peer& peer, Timestamp now);
   void note_wrong(const std::string& name, Timestamp now);
-  // Of the peer's attempts one more, counted in `which`.
+  // Counts one more attempt of the peer in `which`.
   void count(Peer& peer, std::uint64_t Peer::* which, Timestamp now);
   void look_again(Timestamp at) { next_report_ = next_report_ ? std::min(*next_report_, at) : at; }
-  // Drops who has been quiet for long, or else who has been quiet longest.
+  // Forgets the peers whose allowance is full again; if there are none, the peer with the oldest wrong token.
   void make_room(Timestamp now);
   void forget(Peers::iterator peer);
 
   Peers peers_;
   double all_left_ = 2 * kAllWrongTokensPerSecond;
   Timestamp all_last_;
-  std::optional<Timestamp> next_report_;  // nothing is to be reported
-  // Of peers that were dropped before a line about them.
+  std::optional<Timestamp> next_report_;  // empty: nothing to report
+  // Counts of peers that were forgotten before a line about them.
   std::uint64_t dropped_wrong_ = 0;
   std::uint64_t dropped_unread_ = 0;
 };

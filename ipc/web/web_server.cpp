@@ -78,7 +78,7 @@ Result<Descriptor> listen_at(const std::string& address, int port, bool of_gatew
   Descriptor listener(::socket(to->bytes.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int yes = 1;
   if (listener.valid()) ::setsockopt(listener.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  // An address of the cell file that no interface has yet, as at boot: clients reach it once one has it.
+  // At boot, the interface with the address of the cell file may come up later; clients then reach this listener.
   if (listener.valid() && of_gateway) allow_absent_address(listener.get(), to->bytes.ss_family);
   if (listener.valid() && ::bind(listener.get(), to->get(), to->length) == 0 && ::listen(listener.get(), kBacklog) == 0)
     return listener;
@@ -285,8 +285,8 @@ void Server::Impl::look_for_foxglove(Timestamp now) {
 void Server::Impl::report_wrong_tokens(Timestamp now) {
   for (const std::string& line : context->tries.take_reports(now)) {
     log_warning("web.wrong-token",
-                "{}: clients need the token of this run, which cellmirror page prints; if it is no client of yours, "
-                "keep it from this port",
+                "{}: clients need the token of this run, which cellmirror page prints; block this port for unknown "
+                "clients",
                 line);
   }
 }

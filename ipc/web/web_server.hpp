@@ -54,8 +54,8 @@ struct ServerStatus {
   std::uint64_t refused = 0;            // requests: malformed, oversized, wrong token, wrong origin
   std::uint64_t cut = 0;                // connections that were too slow or silent
   std::uint64_t commands = 0;
-  std::uint64_t wrong_tokens = 0;   // that were looked at
-  std::uint64_t unread_tokens = 0;  // refused without a look, since their sender had sent too many wrong ones
+  std::uint64_t wrong_tokens = 0;   // checked and wrong
+  std::uint64_t unread_tokens = 0;  // refused without a check: the sender had sent too many wrong tokens
 };
 
 // Whether a server can listen there now.

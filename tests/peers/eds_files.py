@@ -1,10 +1,10 @@
-"""The EDS files that we ship, read by the tools of others: canopen for Python and lely's dcf tools, which ros2_canopen uses.
+"""Reads the shipped EDS files with other tools: canopen for Python and lely's dcf tools, which ros2_canopen uses.
 
     /usr/bin/python3 tests/peers/eds_files.py CANOPEN LELY [FILE...]
 
 CANOPEN is a checkout of https://github.com/canopen-python/canopen, LELY one of https://gitlab.com/lely_industries/lely-core. Without
-FILE: those of config/devices and config/cells. Nothing of them is installed or run but their readers. Prints what they find; the
-exit code is 1 where one of them refuses a file, warns of it, or loses a value of it."""
+FILE: those of config/devices and config/cells. Only the readers of these tools run; nothing is installed. Prints their findings; the
+exit status is 1 if a tool refuses a file, warns of it, or loses a value."""
 
 import pathlib
 import re
@@ -17,7 +17,7 @@ NODE = 5
 
 
 def readers(canopen, lely):
-    """Of canopen only what reads files: the rest would want a CAN library. SdoClient is for what reads a device."""
+    """Imports only the file readers of canopen: the rest needs a CAN library. SdoClient would read a device."""
     sys.path[:0] = [str(pathlib.Path(lely) / "python/dcf-tools")]
     package = types.ModuleType("canopen")
     package.__path__ = [str(pathlib.Path(canopen) / "canopen")]
@@ -50,7 +50,7 @@ def judge(path, objectdictionary, dcf):
             if not dcf.lint(dcf.parse_file(str(path))):
                 found.append("lely's lint refuses it")
             dcf.Device.from_dcf(str(path), {"NODEID": NODE})
-        except Exception as problem:  # whatever their reader raises is what its user would see
+        except Exception as problem:  # any exception of the reader is a finding
             found.append(f"lely: {problem!r}")
     found += [f"lely: {warning.message}" for warning in told]
     try:
@@ -76,7 +76,7 @@ def main():
     bad = 0
     for path in paths:
         found = judge(path, objectdictionary, dcf)
-        print(f"{path}: " + ("; ".join(found) if found else "well"))
+        print(f"{path}: " + ("; ".join(found) if found else "no findings"))
         bad += bool(found)
     return 1 if bad or not paths else 0
 

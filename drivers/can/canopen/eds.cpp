@@ -24,8 +24,8 @@ constexpr std::uint64_t kArray = 8;
 constexpr std::uint64_t kRecord = 9;
 constexpr std::size_t kMaxText = 256;
 
-// What stands in the file without the comment behind it and quotation marks about it. Not for texts, which may hold
-// such characters.
+// Returns `text` without a trailing comment and without enclosing quotation marks. Not for text values, which may
+// contain these characters.
 std::string_view without_comment(std::string_view text) {
   text = trimmed(text.substr(0, std::min(text.find_first_of(";#"), text.find("//"))));
   if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = trimmed(text.substr(1, text.size() - 2));
@@ -38,8 +38,8 @@ struct Number {
   bool negative = false;
 };
 
-// Hexadecimal with 0x, octal with 0, else decimal (CiA 306, 4.1). Tools fill decimal numbers up with zeros, too: those
-// with a digit that is not octal are taken as such.
+// Hexadecimal with 0x, octal with 0, else decimal (CiA 306, 4.1). Some tools pad decimal numbers with zeros: a number
+// with a leading zero and a digit 8 or 9 is decimal.
 std::optional<Number> parse_ini_number(std::string_view text) {
   Number number;
   text = without_comment(text);
@@ -131,13 +131,13 @@ class EdsReader {
   }
   [[nodiscard]] Place place_of(const IniValue& value) const { return {file_, value.line, value.column}; }
 
-  // The object cannot be used as the file has it. Nobody may need it: a warning here, an error for who uses it.
+  // Marks an object as unusable. A warning here, since the cell may not need the object; an error where it is used.
   void spoil(ObjectAddress address, const Place& place, const std::string& message, const std::string& remedy) {
     warn(place, message, remedy);
     device_.faults.try_emplace(address, Diagnostic{Severity::error, place, message, remedy});
   }
 
-  // CiA 306 names the section of a DCF with one m; tools write both.
+  // CiA 306 spells the section of a DCF with one m; tools write both spellings.
   void read_commissioned_node() {
     for (const char* name : {"devicecomissioning", "devicecommissioning"}) {
       const auto found = ini_.find(name);
@@ -150,7 +150,7 @@ class EdsReader {
     }
   }
 
-  // "1000", "1018sub1"; other names are not those of objects.
+  // "1000", "1018sub1"; sections with other names are not objects.
   void object_section(std::string_view name, const IniSection& section) {
     if (name.size() < 4 || !is_hex(name.substr(0, 4))) return;
     ObjectAddress address{static_cast<std::uint16_t>(from_hex(name.substr(0, 4))), 0};
@@ -200,7 +200,7 @@ class EdsReader {
     if (!known) {
       spoil(address, place,
             fmt::format("[{}] has the unknown DataType 0x{:X}: left out", printable(section.name), *type),
-            "CiA 301 has 0x1 to 0x1B");
+            "write a type of CiA 301, 0x1 to 0x1B");
       return {};
     }
     entry.access = access_of(section);
@@ -293,7 +293,7 @@ class EdsReader {
     if (count > 254) {
       spoil({index, 0}, {file_, section.line, 0},
             fmt::format("[{}]: CompactSubObj={} is beyond 254 subindices: left out", printable(section.name), count),
-            "write the number of subindices behind subindex 0");
+            "write the number of subindices after subindex 0, at most 254");
       return;
     }
     const auto common = entry_of({index, 0}, section);
@@ -381,14 +381,14 @@ std::optional<DeviceDescription> read_eds(const std::string& file, std::uint8_t 
 
 namespace {
 
-// Reads the TPDOs of a description. An object that the file spoils is an error where a TPDO needs it that a stream
-// could use, else nothing.
+// Reads the TPDOs of a description. A faulty object is an error if a TPDO that a stream could use needs it; otherwise
+// it is ignored.
 class TpdoReader {
  public:
   TpdoReader(const DeviceDescription& device, std::uint8_t node_id, const std::string& file, Diagnostics& diagnostics)
       : device_(&device), node_id_(node_id), file_(file), diagnostics_(&diagnostics) {}
 
-  // None where the TPDO does not exist or cannot be used.
+  // Returns nothing if the TPDO does not exist or cannot be used.
   std::optional<TpdoConfig> read(std::uint16_t i) {
     parameters_ = static_cast<std::uint16_t>(0x1800 + i);
     mapping_ = static_cast<std::uint16_t>(0x1A00 + i);
@@ -416,7 +416,8 @@ class TpdoReader {
     return device_->objects.integer({index, subindex}).value_or(0);
   }
 
-  // Calls `visit` with each fault of the two objects, until it returns true. Entries behind the last one do not count.
+  // Calls `visit` with each fault of the two objects until it returns true. Skips mapping entries after the last one in
+  // use.
   template <class Visit>
   bool any_fault(const Visit& visit) const {
     const bool counted = !device_->faults.contains({mapping_, 0});
@@ -434,7 +435,7 @@ class TpdoReader {
     return any_fault([](ObjectAddress, const Diagnostic&) { return true; });
   }
 
-  // Whether the mapping holds values of a drive, or cannot be read well enough to be known.
+  // Returns true if the mapping has an object that a stream uses, or if the mapping itself is faulty.
   [[nodiscard]] bool may_be_used() const {
     const bool unreadable =
         any_fault([this](ObjectAddress address, const Diagnostic&) { return address.index == mapping_; });
@@ -458,7 +459,7 @@ class TpdoReader {
     return found;
   }
 
-  // A gap would move the values behind it. Numbers of objects beyond the last one are usual in EDS files.
+  // A gap would shift the values after it. Many EDS files count entries that are 0 at the end of the mapping.
   bool read_entries(std::uint8_t count, TpdoConfig& tpdo) {
     std::optional<int> gap;
     for (int k = 1; k <= count; ++k) {
@@ -491,7 +492,7 @@ class TpdoReader {
   std::uint16_t mapping_ = 0;
 };
 
-// The node to which the predefined connection set gives this identifier of a PDO; none beyond it.
+// The node that owns this PDO identifier in the predefined connection set (CiA 301); nothing for other identifiers.
 std::optional<std::uint8_t> predefined_owner(std::uint32_t cob_id) {
   const auto node = static_cast<std::uint8_t>(cob_id & 0x7FU);
   const bool is_pdo = cob_id > 0x180 && cob_id < 0x580;

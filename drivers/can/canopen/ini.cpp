@@ -15,7 +15,7 @@ class IniReader {
 
   void line(std::string_view text) {
     ++line_;
-    constexpr std::string_view kDosEnd = "\x1A";  // closes text files of DOS
+    constexpr std::string_view kDosEnd = "\x1A";  // end-of-file mark of DOS text files
     const std::string_view content = trimmed(text);
     if (content.empty() || content == kDosEnd) return;
     if (content.front() == ';' || content.front() == '#' || content.starts_with("//")) return;
@@ -32,7 +32,7 @@ class IniReader {
   IniFile take() { return std::move(sections_); }
 
  private:
-  // A vendor's file may hold any nonsense in what nobody uses.
+  // No errors: vendors' files contain faulty lines that no cell uses.
   void warn(int column, std::string message) { diagnostics_->warning({file_, line_, column}, std::move(message)); }
 
   void section(std::string_view content, int column) {
@@ -93,7 +93,7 @@ const IniValue* IniSection::find(std::string_view key_in_lower_case) const {
 IniFile parse_ini(std::string_view text, const std::string& file, Diagnostics& diagnostics) {
   IniReader reader(file, diagnostics);
   while (!text.empty()) {
-    const std::size_t end = text.find_first_of("\r\n");  // either, or both
+    const std::size_t end = text.find_first_of("\r\n");  // LF, CR or CR LF
     reader.line(text.substr(0, end));
     text.remove_prefix(end == std::string_view::npos ? text.size()
                                                      : end + (text.substr(end).starts_with("\r\n") ? 2 : 1));

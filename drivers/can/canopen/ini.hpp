@@ -23,8 +23,8 @@ struct IniSection {
   [[nodiscard]] const IniValue* find(std::string_view key_in_lower_case) const;
 };
 
-// By their names in lower case. Comments begin with ; (CiA 306), # or //. Other lines that are neither section nor key
-// are warnings; so is a section or key that appears twice, of which the first one counts.
+// Sections by their names in lower case. Comments begin with ; (CiA 306), # or //. Any other line that is neither
+// section nor key is a warning. So is a section or key that appears twice; the first one counts.
 using IniFile = std::map<std::string, IniSection, std::less<>>;
 [[nodiscard]] IniFile parse_ini(std::string_view text, const std::string& file, Diagnostics& diagnostics);
 

@@ -28,7 +28,7 @@ constexpr std::uint32_t kLoad = 0x6461'6F6C;  // "load"
 constexpr std::uint16_t kSyncCounter = 0x1019;
 constexpr std::uint16_t kSyncPeriod = 0x1006;
 constexpr std::uint16_t kEmcyInhibit = 0x1015;
-constexpr std::size_t kMostEmergencies = 32;  // that wait; later ones are only listed
+constexpr std::size_t kMostEmergencies = 32;  // waiting; further ones are only listed in 0x1003
 constexpr std::uint16_t kEmcyPdoLength = 0x8210;
 constexpr std::uint16_t kEmcySyncLength = 0x8240;
 constexpr std::uint16_t kEmcyRpdoLate = 0x8250;
@@ -83,7 +83,7 @@ void add_communication_objects(ObjectDictionary& objects, std::uint8_t node, con
   add_text(objects, 0x100A, "manufacturer software version", "1");
   objects.set_integer({0x100C, 0}, DataType::unsigned16, kServedRw, 0, "guard time");
   objects.set_integer({0x100D, 0}, DataType::unsigned8, kServedRw, 0, "life time factor");
-  // Both are served on command (bit 0), for all parameters at once.
+  // Value 1: the device stores or restores on command, all parameters at once.
   for (const auto& [index, object_name] :
        {std::pair(kStoreObject, "store parameters"), std::pair(kRestoreObject, "restore defaults")}) {
     objects.set_integer({index, 0}, DataType::unsigned8, kServedRo, 1, object_name);
@@ -290,8 +290,8 @@ LssSlave::Identity CanopenSlave::identity() const {
   return numbers;
 }
 
-// Its length is 1 where object 0x1019 says that SYNC has a counter, else 0 (CiA 301, 7.2.5). Another length is
-// reported, and the SYNC counts all the same as one without a counter, but for frames that cannot be SYNC at all.
+// A SYNC has length 1 if object 0x1019 enables the counter, else 0 (CiA 301, 7.2.5). Another length is reported; the
+// frame is then used as a SYNC without a counter, unless it is too long to be a SYNC.
 void CanopenSlave::on_sync(const CanFrame& frame, Timestamp now) {
   const bool counted = object(kSyncCounter) != 0;
   if (frame.length == (counted ? 1 : 0)) {
@@ -319,7 +319,7 @@ void CanopenSlave::on_rpdo(const CanFrame& frame, Timestamp now) {
   if (!written_.empty()) after_write(written_, now);
 }
 
-// Remote frames ask for a TPDO, or for the state (node guarding).
+// A remote frame requests a TPDO or the NMT state (node guarding).
 void CanopenSlave::on_request(const CanFrame& frame, Timestamp now) {
   if (node_ == kNoNodeNumber || frame.extended) return;
   if (frame.id == kHeartbeatBase + node_) return on_guarding(now);
@@ -379,7 +379,7 @@ void CanopenSlave::after_write(std::span<const ObjectAddress> addresses, Timesta
   }
   if (has(kHeartbeatConsumer.index)) {
     master_due_ = {};
-    clear_error(heartbeat_lost);  // another master is watched now, or none
+    clear_error(heartbeat_lost);  // the node now watches another master, or none
   }
   if (has(kErrorField)) {
     for (std::uint8_t i = 1; i <= kErrorHistory; ++i) objects_.write_integer({kErrorField, i}, 0);
@@ -408,7 +408,7 @@ std::optional<SdoAbort> CanopenSlave::write(ObjectAddress address, std::span<con
   return {};
 }
 
-// CiA 301, 7.5.2.13 and 7.5.2.14: a signature protects the commands against accidents; reading gives what they can do.
+// CiA 301, 7.5.2.13 and 7.5.2.14: a signature prevents accidental writes; reading returns the capabilities.
 std::optional<SdoAbort> CanopenSlave::store(ObjectAddress address, std::span<const std::uint8_t> value) {
   const bool saves = address.index == kStoreObject;
   if (get_le(value, value.size()) != (saves ? kSave : kLoad)) return SdoAbort::cannot_store;
@@ -521,7 +521,7 @@ void CanopenSlave::emergency(std::uint16_t code, std::uint8_t error_register) {
 }
 
 void CanopenSlave::set_error(CommunicationError error, std::uint16_t code) {
-  // One that is late after another one is reported, too.
+  // Each late RPDO is reported, even while another one is late.
   const bool is_new = (communication_errors_ & error) == 0 || error == rpdo_late;
   communication_errors_ = static_cast<std::uint8_t>(communication_errors_ | error);
   if (is_new) report(code);

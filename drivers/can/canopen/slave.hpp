@@ -31,12 +31,12 @@ class SlaveApplication : public PdoEvents {
   virtual void written(std::span<const ObjectAddress> addresses, Timestamp now) = 0;
   // NMT reset node or power-on: all objects have their values of power-on again.
   virtual void on_reset(Timestamp now) = 0;
-  // Whether object 0x1010 keeps a value that a master has written: of parameters, not of commands and targets.
+  // Returns true if object 0x1010 stores the object: parameters, but not commands and targets.
   [[nodiscard]] virtual bool is_stored(ObjectAddress /*address*/) const { return true; }
   // A SYNC: its TPDOs are sent, its RPDOs are written.
   virtual void synced(Timestamp now) = 0;
-  // The master's heartbeat or guarding ended, it stopped this node, or it reset its communication. True: that is an
-  // error of the device now, which stays until emergency(0, ...), whether communication returns or not.
+  // The master's heartbeat or guarding ended, or the master stopped this node or reset its communication. Returns true
+  // if the device enters a fault, which lasts until emergency(0, ...) even if communication returns.
   virtual bool communication_lost(Timestamp now) = 0;
   // A fault was injected: the device fails with this error. False: it only reports the error.
   virtual bool fail(std::uint16_t /*code*/, std::uint8_t /*error_register*/, Timestamp /*now*/) { return false; }
@@ -45,7 +45,7 @@ class SlaveApplication : public PdoEvents {
 // Objects 0x1000 to 0x1029 that the slave serves itself, beside the PDOs' (slave_pdos.hpp).
 struct SlaveIdentity {
   std::uint32_t device_type = 0;   // object 0x1000
-  std::string name;                // object 0x1008; 0x1009 and 0x100A are those of the simulation
+  std::string name;                // object 0x1008; 0x1009 and 0x100A are constants of the simulation
   std::uint16_t heartbeat_ms = 0;  // object 0x1017 at power-on; 0: none until it is written
 };
 void add_communication_objects(ObjectDictionary& objects, std::uint8_t node, const SlaveIdentity& identity);
@@ -73,8 +73,8 @@ class CanopenSlave final : private SdoObjects {
   [[nodiscard]] Timestamp next_due() const;  // "never" while nothing is timed
   // The application has changed values of objects.
   void changed(Timestamp now);
-  // An error of the device: EMCY, error register (0x1001) and the list of errors (0x1003). `code` 0: it is reset.
-  // Errors of communication (heartbeat, lengths, RPDOs that are late) are the slave's own, and end by themselves.
+  // Reports a device error: EMCY, error register (0x1001) and list of errors (0x1003). `code` 0: the error is reset.
+  // The slave itself reports and clears communication errors (heartbeat, guarding, lengths, late RPDOs).
   void emergency(std::uint16_t code, std::uint8_t error_register);
 
   // A fault of this node from now on, at most FaultGate::kMostFaults at a time. Without power (death) it is deaf and
@@ -96,7 +96,7 @@ class CanopenSlave final : private SdoObjects {
   [[nodiscard]] std::optional<SdoAbort> refuse(ObjectAddress address, std::int64_t value);
 
   enum class ResetKind : std::uint8_t { communication, node };
-  // Objects 0x1000 to 0x1FFF, or all.
+  // `communication` resets objects 0x1000 to 0x1FFF, `node` all objects.
   void reset(ResetKind kind, Timestamp now);
   void reset_objects(ResetKind kind);
   void follow_faults(Timestamp now);
@@ -113,7 +113,7 @@ class CanopenSlave final : private SdoObjects {
   void on_rpdo(const CanFrame& frame, Timestamp now);
   void after_write(std::span<const ObjectAddress> addresses, Timestamp now);
   void restart_heartbeat(Timestamp now);
-  // Errors of communication that are there, as bits: object 0x1001 has them until they are over.
+  // Communication errors as bits; object 0x1001 shows them until they are cleared.
   enum CommunicationError : std::uint8_t {
     heartbeat_lost = 1,
     guarding_lost = 2,
@@ -124,7 +124,7 @@ class CanopenSlave final : private SdoObjects {
   void set_error(CommunicationError error, std::uint16_t code);
   void clear_error(CommunicationError error);
   [[nodiscard]] std::uint8_t error_register() const;
-  void report(std::uint16_t code);  // EMCY with the error register as it is
+  void report(std::uint16_t code);  // sends EMCY with the current error register
   [[nodiscard]] Timestamp next_emergency() const;
   void master_lost(CommunicationError error, Timestamp now);
   [[nodiscard]] std::optional<SdoAbort> store(ObjectAddress address, std::span<const std::uint8_t> value);
@@ -136,7 +136,7 @@ class CanopenSlave final : private SdoObjects {
   LssSlave lss_;
   SlaveApplication* application_;
   FaultGate gate_;             // what is sent goes through it
-  ObjectDictionary defaults_;  // at power-on: factory_ with what a master has stored
+  ObjectDictionary defaults_;  // values at power-on: factory_ with the parameters that a master has stored
   ObjectDictionary factory_;
   ObjectDictionary objects_;
   SdoServer server_;
@@ -146,10 +146,10 @@ class CanopenSlave final : private SdoObjects {
   NmtState nmt_ = NmtState::boot_up;
   NmtState first_ = NmtState::pre_operational;
   bool guard_toggle_ = false;
-  bool restores_ = false;  // the next reset takes the values of factory_
+  bool restores_ = false;  // the next reset restores the values of factory_
   std::uint8_t communication_errors_ = 0;
   std::uint8_t device_errors_ = 0;    // error register of the application
-  std::deque<CanFrame> emergencies_;  // that wait for the inhibit time (0x1015)
+  std::deque<CanFrame> emergencies_;  // waiting for the inhibit time (0x1015)
   Timestamp emergency_sent_;
   bool reports_error_ = false;          // an injected one that the application leaves to this
   Timestamp now_;                       // of the call under way, for writes that come through the SDO server

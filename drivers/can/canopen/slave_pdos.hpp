@@ -49,18 +49,19 @@ class SlavePdos {
   void load(Timestamp now);
   // NMT operational begins: event-driven TPDOs are sent once.
   void start(Timestamp now);
-  void stop();  // it ends: RPDOs are not watched any more
+  void stop();  // NMT operational ends: RPDOs are no longer watched
 
-  // The identifiers of the RPDOs that exist, and of the TPDOs that may be asked for, added to `identifiers`. They
-  // change with load() only.
+  // Appends the identifiers of the valid RPDOs, and of the TPDOs that allow RTR, to `identifiers`. They change with
+  // load() only.
   void list_identifiers(std::vector<std::uint32_t>& identifiers) const;
   // An RPDO's values go into the dictionary now, or with the next SYNC; `written` gets the objects.
   [[nodiscard]] Received receive(const CanFrame& frame, std::vector<ObjectAddress>& written, Timestamp now);
-  // A remote frame with this identifier: sends the TPDO, if its COB-ID allows RTR.
+  // Answers a remote frame with this identifier: sends the TPDO if its COB-ID allows RTR.
   void request(std::uint32_t id, Timestamp now);
-  // True where an RPDO has not come again within its event timer, which begins with the first one. Once for each time.
+  // Returns true, once per timeout, if an RPDO has not arrived within its event timer. The timer starts with the first
+  // RPDO.
   [[nodiscard]] bool watch(Timestamp now);
-  [[nodiscard]] bool is_late() const;  // one that watch() has told has not come yet
+  [[nodiscard]] bool is_late() const;  // an RPDO that watch() has reported is still missing
   // Sends the TPDOs of this SYNC; `counter` where the SYNC has one.
   void send_on_sync(std::optional<std::uint8_t> counter, Timestamp now);
   // Then the RPDOs that waited for it.
@@ -94,7 +95,7 @@ class SlavePdos {
     std::vector<PdoEntryConfig> entries;
     std::optional<CanFrame> waiting;  // for the next SYNC
     Nanoseconds event_timer{0};
-    Timestamp due;  // when the next one is late
+    Timestamp due;  // the RPDO is late from this time on
     bool late = false;
   };
 

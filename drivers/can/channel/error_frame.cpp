@@ -11,7 +11,8 @@ namespace {
 
 // Older headers lack it.
 constexpr std::uint8_t kControllerActive = 0x40;
-constexpr std::uint32_t kErrorCounters = 0x200;  // CAN_ERR_CNT: bytes 6 and 7 are those of transmission and reception
+constexpr std::uint32_t kErrorCounters =
+    0x200;  // CAN_ERR_CNT: byte 6 is the transmit error counter, byte 7 the receive error counter
 constexpr std::size_t kCountersEnd = 8;
 
 using Words = std::pair<std::uint32_t, const char*>;

@@ -15,8 +15,8 @@ struct LogChannelOptions {
   bool repeat = false;               // from the start again, for ever
 };
 
-// Fails where the file cannot be read, or is another kind of log by its first lines (log_format.hpp). Other lines that
-// are no frames are counted as malformed and told with file:line; send() is refused. All interfaces of the log are
+// Fails if the file cannot be read or its first lines show another log format (log_format.hpp). Other lines that are
+// not frames are counted as malformed and reported with file:line; send() is refused. All interfaces of the log are
 // played as one bus.
 [[nodiscard]] Result<std::unique_ptr<CanChannel>> open_log_channel(const LogChannelOptions& options);
 

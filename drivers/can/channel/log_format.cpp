@@ -35,8 +35,8 @@ constexpr std::array kMagics = std::to_array<LogMagic>({
     {"\xD4\xC3\xB2\xA1", "the file is a network capture (pcap)", "record with 'candump -L can0 > new.log'"},
     {"\x0A\x0D\x0D\x0A", "the file is a network capture (pcapng)", "record with 'candump -L can0 > new.log'"},
     {"SQLite format 3", "the file is a database (SQLite)", kLogConvert},
-    {"\x89MCAP0", "the file is a recording of ours or of ROS (MCAP)",
-     "get a candump log of one of ours with 'cellmirror recording export FILE --candump new.log'"},
+    {"\x89MCAP0", "the file is a recording of cellmirror or ROS (MCAP)",
+     "export a candump log from a recording of cellmirror: 'cellmirror recording export FILE --candump new.log'"},
 });
 
 bool is_number(std::string_view word) {
@@ -57,11 +57,11 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
-// "vcan0  123   [8]  11 22", also behind a time stamp: what candump prints on a terminal.
+// Returns true for terminal output of candump: "vcan0  123   [8]  11 22", with or without a time stamp before it.
 bool is_screen_line(std::span<const std::string_view> words) {
   const std::size_t first = !words.empty() && words[0].starts_with('(') ? 1 : 0;
   if (words.size() < first + 3) return false;
-  // Behind an option -x there is the direction, TX or RX, and flags.
+  // The option -x of candump adds the direction, TX or RX, and flags.
   return std::ranges::any_of(words.subspan(first + 2), [](std::string_view word) {
     return word.size() >= 3 && word.front() == '[' && word.back() == ']' && is_number(word.substr(1, word.size() - 2));
   });
@@ -81,7 +81,7 @@ std::optional<Error> known_format(std::string_view line) {
   if (line.starts_with("timestamp,") || line.starts_with("Time Stamp,"))
     return Error{"the file is a table (CSV)", kLogConvert};
   if (is_screen_line(words)) {
-    return Error{"the file is what candump prints on a terminal, which need not have times",
+    return Error{"the file is terminal output of candump, which may lack time stamps",
                  "record with 'candump -L can0 > new.log', or 'candump -l can0'"};
   }
   return {};
@@ -97,7 +97,7 @@ Result<void> check_log_beginning(std::string_view beginning, bool whole) {
   std::string reason;
   while (!beginning.empty()) {
     const std::size_t end = beginning.find('\n');
-    if (end == std::string_view::npos && !whole) break;  // the line may go on
+    if (end == std::string_view::npos && !whole) break;  // the line may be incomplete
     const std::string_view line = beginning.substr(0, end);
     beginning.remove_prefix(end == std::string_view::npos ? beginning.size() : end + 1);
     if (trimmed(line).empty()) continue;

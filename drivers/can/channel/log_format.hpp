@@ -1,4 +1,4 @@
-// Whether a file is a candump log, by its first lines; what else it is, and what makes a candump log of it. Pure.
+// Recognizes candump logs by their first lines; names other formats and the command that converts them. Pure.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +9,12 @@
 
 namespace cellmirror::can {
 
-inline constexpr std::size_t kLogBeginning = 16'384;  // bytes that are looked at
+inline constexpr std::size_t kLogBeginning = 16'384;  // bytes that are examined
 
-// `beginning`: at most kLogBeginning bytes of the file; `whole`: it has no more. Passes where a line is candump's, and
-// for an empty file. The text of the error has no file name.
+// `beginning`: the first bytes of the file, at most kLogBeginning; `whole`: the file has no more. Succeeds if at least
+// one line is a frame of a candump log, and for an empty file. The text of the error has no file name.
 [[nodiscard]] Result<void> check_log_beginning(std::string_view beginning, bool whole);
-// The same of a file, which has to be readable.
+// The same for a readable file; the text of the error has the file name.
 [[nodiscard]] Result<void> check_log(const std::string& file);
 
 }  // namespace cellmirror::can

@@ -30,7 +30,7 @@ Result<std::unique_ptr<CanChannel>> open_can_channel(const CanChannelConfig& con
 void check_channel(const CanChannelConfig& config, const Place& place, Diagnostics& diagnostics) {
   const auto endpoint = parse_endpoint(config.endpoint);
   const auto* log = endpoint ? std::get_if<LogEndpoint>(&*endpoint) : nullptr;
-  // The reader of the cell file has reported what is not an endpoint, and a file that is not there.
+  // The reader of the cell file has already reported an invalid endpoint and a missing file.
   if (log == nullptr || !std::filesystem::is_regular_file(log->file)) return;
   if (const auto known = check_log(log->file); !known)
     diagnostics.error(place, known.error().what, known.error().remedy);

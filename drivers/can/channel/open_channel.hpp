@@ -11,15 +11,16 @@
 
 namespace cellmirror::can {
 
-// "socketcan:can0", "udp:GROUP:PORT" (IPv6 groups in brackets) or "log:FILE". Fails for what cannot recover: a text
-// that is no endpoint, an interface that is no CAN interface, a file that does not exist or is no candump log, no
-// permission. An interface that is down is no failure; one that is not there (or has no address yet) is none with
-// WhereMissing::wait: then status() names it, and it is tried again until it is there. Not for the tick.
+// "socketcan:can0", "udp:GROUP:PORT" (IPv6 groups in brackets) or "log:FILE". Fails where
+// waiting does not help: a text that is not an endpoint, an interface that is not a CAN interface, a file that does not
+// exist or is not a candump log, no permission. An interface that is down is not a failure. With WhereMissing::wait,
+// nor is an interface that is missing or has no address yet: status() names it, and it is tried again until it exists.
+// Not for the tick.
 enum class WhereMissing : std::uint8_t { fail, wait };
 [[nodiscard]] Result<std::unique_ptr<CanChannel>> open_can_channel(const CanChannelConfig& config,
                                                                    WhereMissing missing = WhereMissing::fail);
 
-// Reports what would keep the channel from being opened and is known without opening it: a log: file of another format.
+// Reports errors that can be found without opening the channel: a log: file of another format.
 void check_channel(const CanChannelConfig& config, const Place& place, Diagnostics& diagnostics);
 
 }  // namespace cellmirror::can

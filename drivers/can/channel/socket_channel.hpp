@@ -55,14 +55,14 @@ class SocketChannel : public CanChannel {
   }
   [[nodiscard]] const CanChannelStatus& status() const final { return status_; }
 
-  // Opens, or begins to wait for what is missing. Fails where waiting does not help.
+  // Opens the socket, or starts to wait for a missing interface. Fails where waiting does not help.
   [[nodiscard]] Result<void> open_or_wait();
 
  protected:
   SocketChannel() = default;
 
-  // Opens or re-opens; leaves `socket_` closed where it fails. Names what is missing in `status_.waits_for` where it
-  // may come later.
+  // Opens or re-opens; leaves `socket_` closed on failure. Names a missing interface that may appear later in
+  // `status_.waits_for`.
   [[nodiscard]] virtual Result<void> open_socket() = 0;
   // Takes what has arrived into the batch, without waiting. False: the socket is of no use any more.
   [[nodiscard]] virtual bool fill() = 0;

@@ -61,18 +61,18 @@ canfd_frame to_kernel(const CanFrame& frame) {
   return raw;
 }
 
-// A virtual interface is made by a command, a real one comes with its adapter: nobody is to create a can0 by hand.
+// A command creates a virtual interface; a real one appears with its adapter, and must not be created by hand.
 std::string remedy_for_missing(const std::string& interface) {
   if (interface.starts_with("vcan"))
     return fmt::format("create it: 'ip link add {} type vcan && ip link set {} up'", interface, interface);
-  return "connect the adapter or load its driver; 'ip link show type can' shows the interfaces that are there";
+  return "connect the adapter or load its driver; 'ip link show type can' lists the CAN interfaces";
 }
 
-// What to do where the kernel does not take a frame.
+// The reason for which the kernel refused a frame, and the remedy.
 std::string send_problem(const std::string& interface, int error) {
   if (error != ENOBUFS) return fmt::format("send: {}", std::strerror(error));
   return fmt::format(
-      "the transmit queue of {} is full: nobody acknowledges, the bus is too slow for what is sent, or the queue is "
+      "the transmit queue of {} is full: no node acknowledges, the bus is too slow for the traffic, or the queue is "
       "too "
       "short ('ip link set {} txqueuelen 1000')",
       interface, interface);
@@ -106,7 +106,7 @@ Result<void> SocketCanChannel::open_socket() {
   Descriptor fd(socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW));
   if (!fd.valid()) {
     if (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT) {
-      status_.waits_for = interface_;  // a module may be loaded
+      status_.waits_for = interface_;  // the module may be loaded later
       return fail("this kernel has no CAN (AF_CAN)",
                   "load it with 'modprobe can_raw', boot a kernel that has it, or use a udp: or log: channel");
     }

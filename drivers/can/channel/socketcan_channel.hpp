@@ -9,9 +9,9 @@
 
 namespace cellmirror::can {
 
-// Fails where the interface is no CAN interface, or permission lacks, and unless it `waits` where the kernel has no CAN
-// or the interface is not there. An interface that is down, is deleted and comes back, a bus that goes bus-off:
-// survived and told by status().
+// Fails if the interface is not a CAN interface or permission is missing; unless `waits`, also if the kernel has no CAN
+// or the interface does not exist. The channel survives an interface that is down, or deleted and created again, and a
+// bus that goes bus-off; status() reports them.
 [[nodiscard]] Result<std::unique_ptr<CanChannel>> open_socketcan_channel(const std::string& interface, bool waits);
 
 }  // namespace cellmirror::can

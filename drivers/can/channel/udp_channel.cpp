@@ -186,7 +186,7 @@ Result<Descriptor> UdpChannel::open_sender() const {
 }
 
 Result<void> UdpChannel::open_socket() {
-  status_.waits_for = interface_;  // also where it has no route or no address yet
+  status_.waits_for = interface_;  // also if it has no route or no address yet
   index_ = if_nametoindex(interface_.c_str());
   if (index_ == 0) return fail("there is no network interface " + interface_, "name one that 'ip link' shows");
   auto sender = open_sender();

@@ -69,7 +69,7 @@ class Planner {
     }
   }
 
-  // The EDS also has the range of the position, where the cell file does not give it.
+  // Takes the position range from the EDS if the cell file does not set it.
   static void take_range(const ObjectDictionary& objects, Cia402NodeConfig& node) {
     const auto lower = objects.integer({0x607B, 1});
     const auto upper = objects.integer({0x607B, 2});
@@ -109,7 +109,7 @@ class Planner {
     }
   }
 
-  // `known`: nothing is missing that could not be read, which was reported.
+  // `known`: the mapping was read without an error; otherwise a missing position is a consequence of a reported error.
   void check_mapping(const Cia402NodePlan& node, const std::string& name, bool known) {
     bool has_position = false;
     for (const TpdoConfig& tpdo : node.tpdos) {

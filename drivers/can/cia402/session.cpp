@@ -163,7 +163,7 @@ void Cia402Session::decode(const Tpdo& tpdo, const CanFrame& frame) {
   }
 }
 
-// By the shorter way: no drive goes half of its range between two frames.
+// Takes the shorter way: no drive moves by half of its range between two frames.
 double Cia402Session::unwrapped(Node& node, std::int64_t counter, std::uint8_t bits) {
   const Cia402NodeConfig& config = node.plan.config;
   constexpr std::uint8_t kMostBits = 62;

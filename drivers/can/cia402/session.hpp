@@ -133,7 +133,7 @@ class Cia402Session {
     HeartbeatCadence cadence = {};
     bool was_operational = false;  // by its newest heartbeat
     bool answering = false;        // its synchronous TPDOs came since it was started: one that stays out is a loss
-    // Of a joint that turns without end: the newest 0x6064, and how far it has come, in increments.
+    // For continuous joints: the newest 0x6064, and the position without wraps, both in increments.
     std::optional<std::int64_t> counter;
     std::int64_t turned = 0;
     Timestamp heartbeat_deadline;
@@ -151,7 +151,7 @@ class Cia402Session {
   void on_tpdo(Tpdo& tpdo, const CanFrame& frame, Timestamp now);
   void decode(const Tpdo& tpdo, const CanFrame& frame);
   void take_position(std::size_t index, double position);
-  // The position in increments, which goes on where the counter of a joint that turns without end wraps.
+  // The position in increments; for continuous joints, it continues where the counter wraps.
   [[nodiscard]] static double unwrapped(Node& node, std::int64_t counter, std::uint8_t bits);
   void on_sync(Timestamp now);
   void count_missing();

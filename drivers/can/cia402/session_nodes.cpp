@@ -57,7 +57,7 @@ std::vector<Cia402Session::ConfigurationStep> Cia402Session::steps_of(const Cia4
 void Cia402Session::bring_up(std::size_t index, Timestamp now) {
   Node& node = nodes_[index];
   node.retry = {};
-  node.counter.reset();  // it may have been referenced again
+  node.counter.reset();  // the drive may have been homed again
   if (!node.steps.empty() && !node.configured) {
     begin_configuration(index, now);
   } else {

@@ -23,7 +23,7 @@ enum class DbcValueType : std::uint8_t { integer, float32, float64 };
 
 struct DbcSignal {
   std::string name;
-  std::string short_name;    // as that of a message
+  std::string short_name;    // as in DbcMessage
   std::uint16_t start = 0;   // bit, 0..511
   std::uint16_t length = 0;  // bits, 1..64
   ByteOrder order = ByteOrder::little_endian;
@@ -44,36 +44,36 @@ struct DbcSignal {
 
 struct DbcMessage {
   std::string name;
-  std::string short_name;  // what CANdb++ writes in place of a name of more than 32 characters; else empty
+  std::string short_name;  // name that CANdb++ writes instead of one with more than 32 characters; else empty
   std::uint32_t id = 0;    // 11 or 29 bits
   bool extended = false;
   std::uint8_t length = 0;  // bytes, 0..64
   std::vector<DbcSignal> signals;
   int line = 0;
 
-  [[nodiscard]] const DbcSignal* find(std::string_view signal) const;  // by either name
+  [[nodiscard]] const DbcSignal* find(std::string_view signal) const;  // by its name or short name
   [[nodiscard]] const DbcSignal* multiplexer() const;
 };
 
-// A message, or a signal of one, that the file describes wrongly.
+// A message or signal that is left out because its description in the file is faulty.
 struct DbcFault {
   std::string message;
   std::string signal;  // empty: the whole message
-  Diagnostic why;      // an error for who uses it
+  Diagnostic why;      // an error, to be reported where the message or signal is used
 };
 
 struct Dbc {
   std::vector<DbcMessage> messages;
   std::vector<DbcFault> left_out;
 
-  [[nodiscard]] const DbcMessage* find(std::string_view message) const;  // by either name
-  // Why a message, or one of its signals, is not there; nullptr where the file does not have it, or has no fault.
+  [[nodiscard]] const DbcMessage* find(std::string_view message) const;  // by its name or short name
+  // The fault for which a message or signal was left out; nullptr if the file does not have it or it has no fault.
   [[nodiscard]] const DbcFault* fault_of(std::string_view message, std::string_view signal) const;
 };
 
-// Reads the whole text; reports all findings in one pass. What cannot be read is a warning and is left out, since few
-// messages of a file are used: signals that reach beyond their message, doubled names, numbers out of range. An error
-// is a file without messages.
+// Reads the whole text; reports all findings in one pass. A faulty message or signal (it reaches beyond its message,
+// its name appears twice, a number is out of range) is left out with a warning, since a cell uses few messages of a
+// file. A file without messages is an error.
 [[nodiscard]] Dbc parse_dbc(std::string_view text, const std::string& file, Diagnostics& diagnostics);
 // The same from a file; none where it cannot be read (told in `diagnostics`). At most 16 MiB.
 [[nodiscard]] std::optional<Dbc> read_dbc(const std::string& file, Diagnostics& diagnostics);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uintmax_t kMaxDbcBytes = 16U << 20U;
 constexpr std::uint32_t kExtendedFlag = 0x8000'0000;
-// A parking place for signals of no message. Tools give it an identifier of their choice, mostly 0xC0000000.
+// Pseudo message that holds signals without a message. Tools choose its identifier, in most cases 0xC0000000.
 constexpr std::string_view kNoMessage = "VECTOR__INDEPENDENT_SIG_MSG";
 constexpr std::uint32_t kNoMessageId = 0xC000'0000;
 constexpr std::size_t kMaxRanges = 256;
@@ -66,8 +66,8 @@ class DbcReader {
   }
 
  private:
-  // A message, or one of its signals (else empty), that cannot be used as the file has it. Nobody may need it: a
-  // warning here, an error for who uses it.
+  // Leaves out a message, or one of its signals (if `signal` is not empty). A warning here, since the cell may not need
+  // it; an error where it is used.
   void spoil(const std::string& message, const std::string& signal, const Place& place, const std::string& what,
              const std::string& remedy = {}) {
     diagnostics_->warning(place, what + ": left out", remedy);
@@ -77,7 +77,7 @@ class DbcReader {
   [[nodiscard]] Place here() const { return {file_, in_.line(), in_.column()}; }
   [[nodiscard]] Place line_place(int line) const { return {file_, line, 0}; }
 
-  // Says what was expected. What is read now, if it has a name yet, is left out.
+  // If not `found`, reports `what` as expected and leaves out the current message or signal if its name is known.
   bool expect(bool found, std::string_view what) {
     if (found) return true;
     const std::string text = fmt::format("expected {}", what);
@@ -118,14 +118,14 @@ class DbcReader {
   void unknown(std::string_view word) {
     const bool name_of_list = word.ends_with('_') && in_.at_line_end();
     if (!name_of_list) {
-      const std::string what = word.empty() ? "no statement starts like this: skipped"
+      const std::string what = word.empty() ? "the line does not begin with a statement: skipped"
                                             : "unknown statement " + printable(word) + ": skipped";
       diagnostics_->warning(here(), what);
     }
     in_.skip_line();
   }
 
-  // Whether the next line begins a statement.
+  // Returns true if the next line begins a statement.
   [[nodiscard]] bool at_statement() const {
     DbcScanner probe = in_;
     const std::string_view word = probe.word();
@@ -153,8 +153,8 @@ class DbcReader {
     diagnostics_->warning(line_place(first_line), "the statement does not end with a semicolon");
   }
 
-  // BA_ "SystemMessageLongSymbol" BO_ 256 "..." and BA_ "SystemSignalLongSymbol" SG_ 256 Short "...": CANdb++ cuts
-  // names to 32 characters and keeps the whole ones in these attributes.
+  // BA_ "SystemMessageLongSymbol" BO_ 256 "..." and BA_ "SystemSignalLongSymbol" SG_ 256 Short "...": CANdb++ shortens
+  // names to 32 characters and keeps the full names in these attributes.
   void long_name() {
     const auto attribute = in_.string();
     const bool of_signal = attribute == "SystemSignalLongSymbol";
@@ -182,7 +182,7 @@ class DbcReader {
 
   bool message() {
     current_ = kNone;
-    skipping_ = true;  // the signals, unless the message can be used
+    skipping_ = true;  // skips the signals until the message proves usable
     const Place place = line_place(in_.line());
     const auto raw_id = unsigned_number(0xFFFF'FFFF);
     if (!expect(raw_id.has_value(), "the identifier of the message as a decimal number")) return false;
@@ -243,7 +243,8 @@ class DbcReader {
 
   bool signal() {
     if (current_ == kNone) {
-      if (!skipping_) diagnostics_->warning(line_place(in_.line()), "the signal belongs to no message: left out");
+      if (!skipping_)
+        diagnostics_->warning(line_place(in_.line()), "the signal does not belong to a message: left out");
       return false;
     }
     DbcSignal signal;
@@ -259,8 +260,8 @@ class DbcReader {
     if (const auto unit = in_.string()) {
       signal.unit = std::string(unit->substr(0, kMaxName));
     } else {
-      diagnostics_->warning(here(),
-                            fmt::format("signal {}: expected the unit in quotation marks: taken as none", signal.name));
+      diagnostics_->warning(
+          here(), fmt::format("signal {}: expected the unit in quotation marks: no unit is used", signal.name));
     }
     in_.skip_line();  // the receivers
     keep(std::move(signal));
@@ -305,7 +306,7 @@ class DbcReader {
     return true;
   }
 
-  // Two numbers in brackets.
+  // Reads two numbers; `brackets` has the opening bracket, the separator and the closing bracket.
   bool pair(std::string_view brackets, double& a, double& b) {
     if (!in_.take(brackets[0])) return false;
     const auto first = number();
@@ -322,11 +323,12 @@ class DbcReader {
     return expect(signal.factor != 0.0, "a factor other than 0");
   }
 
-  // Decoding does not need them, and tools write infinities of their own (1.#INF).
+  // Unreadable limits are not a fault: decoding does not need them, and tools write infinities such as 1.#INF.
   void read_limits(DbcSignal& signal) {
     if (pair("[|]", signal.minimum, signal.maximum)) return;
     signal.minimum = signal.maximum = 0.0;
-    diagnostics_->warning(here(), fmt::format("signal {}: expected [minimum|maximum]: taken as none", signal.name));
+    diagnostics_->warning(here(),
+                          fmt::format("signal {}: expected [minimum|maximum]: no limits are used", signal.name));
     while (!in_.at_line_end() && in_.peek() != ']' && in_.peek() != '"') in_.advance();
     in_.take(']');
   }
@@ -355,7 +357,7 @@ class DbcReader {
     message.signals.push_back(std::move(signal));
   }
 
-  // The signal that "<id> <name>" names; told where there is none, but for those that are left out anyway.
+  // The signal that "<id> <name>" names. Warns if it does not exist, unless it or its message was left out.
   DbcSignal* named_signal() {
     const auto raw_id = unsigned_number(0xFFFF'FFFF);
     if (!expect(raw_id.has_value(), "the identifier of a message")) return nullptr;
@@ -410,7 +412,7 @@ class DbcReader {
     return end_of_statement();
   }
 
-  // Everything was read: a missing semicolon is no loss at the end of a line.
+  // A missing semicolon at the end of a line is only a warning: the statement was read completely.
   bool end_of_statement() {
     if (in_.take(';')) return true;
     if (!in_.at_line_end()) return expect(false, "';'");
@@ -463,12 +465,12 @@ class DbcReader {
     int line = 0;
   };
 
-  // The whole name takes the place of the short one, by which it is still found.
+  // Replaces the short name by the full name; find() still accepts the short one.
   void rename(const LongName& name) {
     const auto replace = [&](auto& named, bool is_free) {
       if (named.name == name.name) return;
       if (!is_free) {
-        diagnostics_->warning(line_place(name.line), fmt::format("the long name {} of {} is that of another: ignored",
+        diagnostics_->warning(line_place(name.line), fmt::format("the long name {} of {} is already in use: ignored",
                                                                  printable(name.name), named.name));
       } else if (named.short_name.empty()) {
         named.short_name = std::exchange(named.name, name.name);
@@ -482,7 +484,7 @@ class DbcReader {
     if (signal != message.signals.end()) replace(*signal, message.find(name.name) == nullptr);
   }
 
-  // Who uses a long name of what is left out learns why, too: the fault stands there with either name.
+  // Makes faults known under the long names too, so that fault_of() finds them by either name.
   void rename_faults() {
     std::map<std::pair<std::string, std::string>, std::string> long_names;
     for (const LongName& name : long_names_) long_names.try_emplace({name.message, name.signal}, name.name);
@@ -493,7 +495,7 @@ class DbcReader {
       const auto long_message = long_names.find({other.message, {}});
       const auto long_signal = long_names.find({other.message, other.signal});
       if (long_message != long_names.end()) other.message = long_message->second;
-      if (!other.signal.empty()) dbc_.left_out[i].message = other.message;  // the name that the message has now
+      if (!other.signal.empty()) dbc_.left_out[i].message = other.message;  // its name after rename()
       if (long_signal != long_names.end() && !other.signal.empty()) other.signal = long_signal->second;
       const bool differs = other.message != dbc_.left_out[i].message || other.signal != dbc_.left_out[i].signal;
       if (differs) dbc_.left_out.push_back(std::move(other));
@@ -502,7 +504,7 @@ class DbcReader {
 
   static constexpr std::size_t kNone = ~std::size_t{0};
   static constexpr std::size_t kMaxName = 256;
-  static constexpr std::size_t kMaxSignals = 4096;  // of a message
+  static constexpr std::size_t kMaxSignals = 4096;  // per message
 
   DbcScanner in_;
   std::string file_;
@@ -511,13 +513,13 @@ class DbcReader {
   std::size_t current_ = kNone;
   bool skipping_ = false;
   bool has_messages_ = false;
-  // What an unreadable place belongs to; empty where that has no name yet.
+  // The message and signal that are being read; empty until the name is known.
   std::string reading_message_;
   std::string reading_signal_;
   std::vector<LongName> long_names_;
-  std::map<std::string, std::size_t> numbers_;             // of messages, by their short names
+  std::map<std::string, std::size_t> numbers_;             // position of each message, by short name
   std::set<std::pair<std::string, std::string>> spoiled_;  // as in Dbc::left_out
-  std::set<std::uint32_t> parked_ids_;                     // of messages that are left out
+  std::set<std::uint32_t> parked_ids_;                     // identifiers of messages that are left out
   std::map<std::uint32_t, std::size_t> messages_by_id_;    // with the flag of bit 31
   std::set<std::string> names_;
   std::set<std::string> signal_names_;

@@ -44,7 +44,7 @@ class SignalPlanner {
     diagnostics_->error(place, std::move(message), std::move(remedy));
   }
 
-  // Whether the DBC describes it wrongly; then that is an error, at its place in the DBC.
+  // Returns true if the message or signal was left out as faulty, and reports the fault as an error in the DBC.
   bool is_left_out(std::string_view message, std::string_view signal) {
     const DbcFault* fault = plan_.dbc.fault_of(message, signal);
     if (fault == nullptr) return false;
@@ -131,7 +131,7 @@ class SignalPlanner {
   Diagnostics* diagnostics_;
 };
 
-// What one round of the signal's counter is, in SI; 0 where it is none, or too long to come round.
+// The range of the signal's counter in SI units; 0 if the signal is not a counter that wraps.
 double span_of(const DbcSignal& signal, const DbcSignalConfig& config) {
   constexpr std::uint16_t kLongest = 32;
   const bool wraps = config.turns && config.quantity == JointQuantity::position &&
@@ -266,7 +266,7 @@ void DbcSession::take(const Source& source, Field& field, const CanFrame& frame,
 
 void DbcSession::take_position(const Source& source, Field& field, double value, Timestamp now) {
   if (field.span > 0) {
-    // By the shorter way: no joint goes half of the counter's range between two frames.
+    // Takes the shorter way: no joint moves by half of the counter's range between two frames.
     if (field.last) value = *field.last + std::remainder(value - *field.last, field.span);
     field.last = value;
   }

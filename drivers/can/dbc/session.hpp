@@ -86,7 +86,7 @@ class DbcSession {
   DbcSession(const DbcSession&) = delete;  // points into its own plan
   DbcSession& operator=(const DbcSession&) = delete;
 
-  // The source begins again: forgets its values, counters of protected messages, and who sent what.
+  // The source has restarted: discards its values, the counters of protected messages, and the senders seen so far.
   void restart();
 
   // Any frame of the bus. One with position signals makes a sample; velocities and efforts of other frames go with it
@@ -108,7 +108,7 @@ class DbcSession {
     bool outside = false;  // and that was reported
     Timestamp told;
     AlternationWatch senders = {};  // of positions
-    // Of a position that turns without end: what its counter holds, and the newest value; rad. 0: it does not wrap.
+    // For continuous joints: range of the counter (0: does not wrap) and newest value without wraps, both in rad.
     double span = 0;
     std::optional<double> last = {};
   };

@@ -58,7 +58,7 @@ class CanStream final : public JointStream, private ChannelMember, private CanPr
   std::unique_ptr<CanProtocol> protocol_;
   JointSampleSink* sink_ = nullptr;
   bool open_ = false;
-  bool begins_ = false;  // the next sample is the first one; the channel's thread
+  bool begins_ = false;  // the next sample is the first after a start; the channel's thread
 
   // The channel's thread's.
   RateMeter rate_;

@@ -44,7 +44,7 @@ class ChannelMembers {
   // Starts the member, which outlives its membership.
   void add(ChannelMember& member, Timestamp now);
   void remove(ChannelMember& member);
-  // Starts all of them again.
+  // Starts all members again.
   void restart(Timestamp now);
 
   // A frame of the channel, to those that take it. What they answer goes out together, before this returns.

@@ -106,7 +106,7 @@ void SharedChannel::run() {
     const bool is_frame = received == CanReceive::frame;
     const bool opened = waited_ && channel_->status().waits_for.empty();
     if (opened) waited_ = false;
-    // Nothing that they knew holds any more, and nobody has heard what they sent.
+    // The state of the members is outdated, and no other node has received the frames that they sent.
     if (opened || received == CanReceive::again) members_.restart(clock_->now());
     if (is_frame && !frame.frame.error) members_.receive(frame.frame, frame.receive_time);
     members_.deliver_waiting();
@@ -168,7 +168,8 @@ void SharedChannel::watch_bus(std::optional<CanBusState> reported) {
   members_.keep_error(text);
 }
 
-// Not for logs, which refuse everything, nor where the bus is down, which was reported.
+// Does not report refused frames of logs, which refuse every frame, or of a bus that is down, which is reported
+// already.
 void SharedChannel::watch_refused() {
   const CanChannelStatus& status = channel_->status();
   if (status.send_refused == refused_told_ || status.last_error.empty()) return;

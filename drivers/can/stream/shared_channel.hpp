@@ -86,7 +86,7 @@ class SharedChannel {
   ChannelMembers members_;
   CanBusState bus_ = CanBusState::unknown;
   Timestamp seen_due_;   // when the thread first saw that a member is due
-  bool waited_ = false;  // it was never open yet
+  bool waited_ = false;  // the channel has not been open yet
   std::uint64_t refused_told_ = 0;
   Timestamp told_refused_;
 

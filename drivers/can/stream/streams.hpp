@@ -26,7 +26,7 @@ using ChannelOpener = std::function<Result<std::unique_ptr<CanChannel>>(const Ca
 struct CanStreamOptions {
   std::string thread_name = "can";  // at most 15 bytes are shown by the system
   int fifo_priority = 0;            // > 0: SCHED_FIFO with this priority where the machine allows it
-  ChannelOpener open_channel;       // empty: open_can_channel() that waits; tests give a virtual bus
+  ChannelOpener open_channel;       // empty: open_can_channel() with WhereMissing::wait; tests use a virtual bus
 };
 
 // Reads and checks the EDS, DCF or DBC files now; the channel is opened by open(). Fails with all errors found.

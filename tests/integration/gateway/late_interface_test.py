@@ -1,6 +1,6 @@
-"""A network interface that appears after the gateway has started: streams, drives and I/O nodes wait for it, say so, and work then.
+"""A network interface appears after the gateway has started: streams, drives and I/O nodes report that they wait, and then work.
 
-Runs in a network namespace of its own, where it makes the interface."""
+Runs in its own network namespace, in which it creates the interface."""
 
 import os
 import shutil
@@ -62,7 +62,7 @@ class LateInterface(unittest.TestCase):
     def problems(self):
         return [problem["text"] for problem in self.scratch.status()["problems"] if problem["kind"] == "stream"]
 
-    def test_streams_wait_for_it_and_are_mirrored_once_it_is_there(self):
+    def test_streams_wait_for_the_interface_and_are_mirrored_once_it_exists(self):
         for robot in ("SCARA_1", "TABLE_1"):
             done = self.scratch.send(f"ROBOT {robot} online")
             self.assertEqual(done.returncode, 0, done.stderr)

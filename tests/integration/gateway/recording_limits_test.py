@@ -1,4 +1,4 @@
-"""Recordings that are small as files and large decompressed: answered from the index, or refused, with an option to read them."""
+"""Small recordings with a large decompressed size are answered from the index or refused; an option raises the limit."""
 
 import json
 import struct
@@ -14,7 +14,7 @@ LIMIT = "--decompressed-limit"
 
 
 def zeros_as_zstd(size):
-    """A frame of zstd (RFC 8878) with `size` zeros: blocks of 128 KiB that name one byte."""
+    """A frame of zstd (RFC 8878) with `size` zeros: run-length blocks of 128 KiB."""
     block = 128 << 10
     out = struct.pack("<IBQ", 0xFD2FB528, 0xE0, size)  # one segment, with its size
     while size > 0:
@@ -33,7 +33,7 @@ def text(value):
 
 
 def chunk():
-    """With one message's worth of nothing: zeros, which are no records."""
+    """A chunk of zeros, which are not records."""
     data = zeros_as_zstd(CHUNK_BYTES)
     return record(0x06, struct.pack("<QQQI", 1, 2, CHUNK_BYTES, 0) + text("zstd") + struct.pack("<Q", len(data)) + data)
 
@@ -89,17 +89,17 @@ class RecordingLimits(unittest.TestCase):
         self.assertEqual((info["chunks"], info["messages"], info["uncompressed_bytes"]), (CHUNKS, CHUNKS, CHUNKS * CHUNK_BYTES))
         self.assertEqual(info["chunks_left_out"], 0)
 
-    def test_info_without_an_index_says_what_it_has_left_out(self):
+    def test_info_without_an_index_reports_the_chunks_left_out(self):
         done = self.scratch.cellmirror("recording", "info", self.plain, "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         info = json.loads(done.stdout)
         self.assertEqual((info["indexed"], info["chunks"], info["uncompressed_bytes"]), (False, CHUNKS, CHUNKS * CHUNK_BYTES))
         self.assertEqual(info["chunks_left_out"], CHUNKS - (1 << 30) // CHUNK_BYTES)
         done = self.scratch.cellmirror("recording", "info", self.plain)
-        self.assertIn(f"35 of 40 chunks are not counted: all of them have 8.0 GB decompressed", done.stdout)
+        self.assertIn("35 of 40 chunks are not counted: all chunks together have 8.0 GB decompressed", done.stdout)
         self.assertIn(f"{LIMIT} 8\n", done.stdout)
 
-    def test_what_reads_every_chunk_refuses(self):
+    def test_subcommands_that_read_every_chunk_refuse(self):
         for file in (self.plain, self.indexed):
             self.refused("recording", "check", file)
             self.refused("recording", "recover", file, "-o", self.scratch.root / "new.mcap")
@@ -121,7 +121,7 @@ class RecordingLimits(unittest.TestCase):
         self.refused("recording", "check", few)
         done = self.scratch.cellmirror("recording", "check", few, "--json", LIMIT, "1.2")
         check = json.loads(done.stdout)
-        # One in each chunk, and that there is no summary.
+        # One fault in each chunk, and one for the missing summary.
         self.assertEqual((check["fault_count"], check["chunks"]), (7, 6))
         self.assertEqual(done.returncode, 1)
 

@@ -72,7 +72,7 @@ class Messages(unittest.TestCase):
         mapping = "[[stream.node.tpdo]]\nnumber = 1\nentries = [{ index = 0x6041, bits = 16 }, { index = 0x6064, bits = 32 }]\n"
         self.assertEqual(self.check(node + mapping, 0), [])
 
-    def test_a_vendors_file_is_refused_only_for_what_the_cell_uses(self):
+    def test_a_vendors_file_is_refused_only_for_faults_in_used_parts(self):
         eds = (g.CELLS / "can_cell/robots/axis_drive.eds").read_text()
         node = DRIVE + '[[stream.node]]\nid = 3\njoint = "J_1"\nincrements_per_rad = 1000\neds = "vendor.eds"\n'
         for odd in ("# made by a tool\n[2010]\nDataType=5\nAccessType=rw\nDefaultValue=0x1FF\n", "[2011]\nDefaultValue=1\n",

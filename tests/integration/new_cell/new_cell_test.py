@@ -256,7 +256,7 @@ class Refuses(Base):
         self.refused("mine", "--urdf", ARM, "--base", "flange", said="a joint moves")
         self.refused("mine", "--urdf", ARM, "--dbc", DBC, "--channel", "can0", said="is not a channel")
 
-    def test_an_eds_of_another_device_is_not_taken_for_a_drive(self):
+    def test_an_eds_of_another_device_is_refused(self):
         io_node = g.SOURCE / "config/devices/cellmirror_io_node.eds"
         self.refused("mine", "--urdf", ARM, "--eds", io_node, "--node", "1", said="an I/O device (CiA 401), not a drive")
         encoder = self.write("encoder.eds", "[1000]\nDataType=7\nDefaultValue=0x00020196\n[6004]\nDataType=7\n")

@@ -22,7 +22,7 @@ struct Inlet final : JointSampleSink {
 
 struct TurnUnwrapperTest : testing::Test {
   Inlet inlet;
-  TurnUnwrapper sut{inlet, 0b01};  // the first of two joints turns without end
+  TurnUnwrapper sut{inlet, 0b01};  // the first of two joints is continuous
   std::uint64_t sequence = 0;
 
   double pushed(double first, double second = 0.0) {
@@ -32,12 +32,12 @@ struct TurnUnwrapperTest : testing::Test {
     sample.position[0] = first;
     sample.position[1] = second;
     EXPECT_TRUE(sut.push(sample));
-    EXPECT_EQ(inlet.samples.back().position[1], second) << "another joint is left alone";
+    EXPECT_EQ(inlet.samples.back().position[1], second) << "the other joint is unchanged";
     return inlet.samples.back().position[0];
   }
 };
 
-TEST_F(TurnUnwrapperTest, APositionThatWrapsGoesOnInBothDirections) {
+TEST_F(TurnUnwrapperTest, APositionThatWrapsIsContinuedInBothDirections) {
   for (const double direction : {1.0, -1.0}) {
     sut.restart();
     for (int i = 0; i <= 1000; ++i) {
@@ -47,26 +47,26 @@ TEST_F(TurnUnwrapperTest, APositionThatWrapsGoesOnInBothDirections) {
   }
 }
 
-TEST_F(TurnUnwrapperTest, APublisherFromZeroToATurnGoesOnToo) {
+TEST_F(TurnUnwrapperTest, APositionFromZeroToOneTurnIsContinued) {
   for (int i = 0; i <= 1000; ++i) {
     const double real = 0.05 * i;
     EXPECT_NEAR(pushed(std::fmod(real, 2 * kPi)), real, 1e-9) << i;
   }
 }
 
-TEST_F(TurnUnwrapperTest, ASourceThatCountsTurnsIsTakenAsItIs) {
+TEST_F(TurnUnwrapperTest, ASourceThatCountsTurnsPassesUnchanged) {
   for (int i = 0; i <= 100; ++i) EXPECT_EQ(pushed(0.9 * i), 0.9 * i);
-  EXPECT_EQ(pushed(500.0), 500.0) << "it was silent for some turns";
+  EXPECT_EQ(pushed(500.0), 500.0) << "the source was silent for some turns";
 }
 
-TEST_F(TurnUnwrapperTest, AnotherSourceBeginsAnew) {
+TEST_F(TurnUnwrapperTest, ARestartedSourceIsNotContinued) {
   static_cast<void>(pushed(3.1));
   EXPECT_NEAR(pushed(-3.1), 2 * kPi - 3.1, 1e-9);
   sequence = JointSample::kBeginsAnew - 1;
   EXPECT_EQ(pushed(-3.0), -3.0);
 }
 
-TEST_F(TurnUnwrapperTest, WhatIsNotANumberOrNotThereChangesNothing) {
+TEST_F(TurnUnwrapperTest, NonFiniteAndAbsentPositionsChangeNothing) {
   static_cast<void>(pushed(3.1));
   EXPECT_TRUE(std::isnan(pushed(std::numeric_limits<double>::quiet_NaN())));
   JointSample other;

@@ -168,7 +168,7 @@ TEST_F(LogTest, RepeatingALogWithoutFramesEnds) {
   EXPECT_EQ(result, CanReceive::end);
 }
 
-TEST(LogFormat, OtherLogsAreNamedWithTheirConverter) {
+TEST(LogFormat, NamesOtherFormatsAndTheirConverter) {
   using namespace std::string_view_literals;
   const std::pair<std::string_view, const char*> cases[] = {
       {"date Wed Apr 14 10:00:00.000 2021\nbase hex  timestamps absolute\n", "asc2log"},
@@ -189,7 +189,7 @@ TEST(LogFormat, OtherLogsAreNamedWithTheirConverter) {
   }
 }
 
-TEST(LogFormat, ACandumpLogMayHaveBrokenLinesAndNothingAtAll) {
+TEST(LogFormat, AcceptsBrokenLinesAndEmptyFiles) {
   EXPECT_TRUE(check_log_beginning("", true));
   EXPECT_TRUE(check_log_beginning("\n\n", true));
   EXPECT_TRUE(check_log_beginning("nonsense\n(1.0) vcan0 123#\n", true));
@@ -197,7 +197,7 @@ TEST(LogFormat, ACandumpLogMayHaveBrokenLinesAndNothingAtAll) {
   EXPECT_FALSE(check_log_beginning(std::string(kLogBeginning, 'x'), false));
 }
 
-TEST(LogChannel, AForeignLogIsRefusedWithItsNameWhenItIsOpenedAndWhenItIsChecked) {
+TEST(LogChannel, OpeningAndCheckingRefuseAnotherFormatWithTheFileName) {
   const std::string path = testing::TempDir() + "can_foreign_" + std::to_string(getpid()) + ".asc";
   std::ofstream(path) << "date Wed Apr 14 10:00:00.000 2021\nbase hex  timestamps absolute\n";
   CanChannelConfig config;
@@ -211,7 +211,7 @@ TEST(LogChannel, AForeignLogIsRefusedWithItsNameWhenItIsOpenedAndWhenItIsChecked
   std::filesystem::remove(path);
 }
 
-TEST(ErrorFrame, CountersAreNumbersAndUnknownClassesAreNamed) {
+TEST(ErrorFrame, ShowsErrorCountersAndUnknownClasses) {
   CanFrame sut = frame(0x200, {0, 0, 0, 0, 0, 0, 96, 127});
   sut.error = true;
   EXPECT_EQ(error_words(sut), "error counters 96 (transmit) and 127 (receive)");
@@ -233,7 +233,8 @@ TEST(SocketCanChannel, WithoutCanOrInterfaceItFailsWithARemedy) {
   const auto sut = open_can_channel(config);
   ASSERT_FALSE(sut);
   EXPECT_FALSE(sut.error().remedy.empty());
-  EXPECT_THAT(sut.error().text(), testing::Not(HasSubstr("link add"))) << "nobody makes a real interface by hand";
+  EXPECT_THAT(sut.error().text(), testing::Not(HasSubstr("link add")))
+      << "a real interface must not be created by hand";
 }
 
 TEST(SocketCanChannel, WaitsForAnInterfaceThatIsMissing) {
@@ -249,7 +250,7 @@ TEST(SocketCanChannel, WaitsForAnInterfaceThatIsMissing) {
   EXPECT_FALSE((*sut)->send(frame(1, {})));
 }
 
-// The interface appears while it is waited for.
+// A channel whose interface appears while it waits.
 struct LateChannel final : SocketChannel {
   Result<void> open_socket() override {
     status_.waits_for = "late0";
@@ -265,7 +266,7 @@ struct LateChannel final : SocketChannel {
   bool there = false;
 };
 
-TEST(SocketChannel, IsOpenedOnceWhatItWaitsForIsThere) {
+TEST(SocketChannel, OpensWhenTheMissingInterfaceAppears) {
   LateChannel sut;
   ASSERT_TRUE(sut.open_or_wait());
   ReceivedCanFrame got;

@@ -166,13 +166,13 @@ TEST(Dbc, TellsAllMistakesWithTheirPlaces) {
         "f.dbc:10: warning: message D has the identifier 1 of A", "f.dbc:11:", "f.dbc:13: warning: a string"}) {
     EXPECT_THAT(told, HasSubstr(expected));
   }
-  EXPECT_TRUE(diagnostics.ok()) << "nobody uses these signals";
+  EXPECT_TRUE(diagnostics.ok()) << "the cell does not use these signals";
   EXPECT_TRUE(sut.find("A")->signals.empty());
 }
 
 const std::string kAxisOnly = "BO_ 256 Axis: 8 A\n SG_ Angle : 0|32@1- (0.001,0) [0|0] \"rad\" A\n";
 
-TEST(Dbc, WhatNobodyUsesIsAWarning) {
+TEST(Dbc, WarnsOfFaultsInUnusedParts) {
   for (const char* more :
        {"BO_ 257 Other: 2 A\n SG_ S : 8|16@1+ (1,0) [0|0] \"\" A\n",
         "BO_ 2566844926 Long: 200 A\n SG_ S : 800|16@1+ (1,0) [0|0] \"\" A\nSIG_VALTYPE_ 2566844926 S : 1;\n",
@@ -181,7 +181,7 @@ TEST(Dbc, WhatNobodyUsesIsAWarning) {
         "VAL_ 256 Angle 1 \"one\"", "SIG_VALTYPE_ 999 Nobody : 1;\n", "SG_MUL_VAL_ 999 Nobody M 0-1;\n", "VERSION 3\n",
         "BO_ 257 Other 8 A\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" A\n", "\xFF\xFE"}) {
     Diagnostics diagnostics;
-    // A second message of the name is an error for who uses the first one, too: here it has another one.
+    // A second message "Axis" would make the first one unusable too, so it gets another name.
     std::string text = kAxisOnly + more;
     if (const std::size_t at = text.find("257 Axis"); at != std::string::npos) text.replace(at, 8, "257 Oxis");
     const Dbc sut = parse_dbc(text, "f.dbc", diagnostics);
@@ -192,7 +192,7 @@ TEST(Dbc, WhatNobodyUsesIsAWarning) {
   }
 }
 
-TEST(Dbc, TheMessageOfIndependentSignalsIsIgnoredWhateverItsIdentifier) {
+TEST(Dbc, IgnoresTheMessageOfIndependentSignalsWithAnyIdentifier) {
   for (const char* id : {"1073741824", "3221225472", "0"}) {
     Diagnostics diagnostics;
     const std::string text =
@@ -211,12 +211,12 @@ TEST(Dbc, AStatementWithoutSemicolonEndsWithItsLine) {
   Diagnostics diagnostics;
   const std::string text = kAxisOnly + "VAL_ 256 Angle 1 \"one\"\nSIG_VALTYPE_ 256 Angle : 1\nVAL_ 256 Angle 1 \"one\"";
   const Dbc sut = parse_dbc(text, "f.dbc", diagnostics);
-  EXPECT_EQ(sut.find("Axis")->find("Angle")->type, DbcValueType::float32) << "the statement behind is read";
+  EXPECT_EQ(sut.find("Axis")->find("Angle")->type, DbcValueType::float32) << "the next statement is read";
   EXPECT_EQ(diagnostics.warnings(), 3U) << diagnostics.text();
   EXPECT_THAT(diagnostics.text(), HasSubstr("f.dbc:3: warning: the statement does not end with a semicolon"));
 }
 
-TEST(Dbc, LimitsThatAreNotNumbersAreNone) {
+TEST(Dbc, IgnoresLimitsThatAreNotNumbers) {
   Diagnostics diagnostics;
   const Dbc sut = parse_dbc("BO_ 1 A: 8 X\n SG_ S : 0|32@1- (1,0) [-1.#INF|1.#INF] \"deg\" X\n", "f.dbc", diagnostics);
   ASSERT_NE(sut.find("A")->find("S"), nullptr);
@@ -225,7 +225,7 @@ TEST(Dbc, LimitsThatAreNotNumbersAreNone) {
   EXPECT_EQ(diagnostics.warnings(), 1U);
 }
 
-TEST(Dbc, LongNamesOfCanDbTakeThePlaceOfTheShortOnes) {
+TEST(Dbc, FindsMessagesAndSignalsByLongAndShortNames) {
   Diagnostics diagnostics;
   const std::string text =
       "BO_ 256 Shoulder_Axis_Actual_Values_0000: 8 A\n"
@@ -422,7 +422,7 @@ TEST_F(DbcSessionTest, ValuesBeyondTheLimitsOfTheDbcAreTakenAndToldOnceAnOccurre
   EXPECT_EQ(recorder.beyond.size(), 2U);
 }
 
-TEST(DbcTurns, ACounterOfAJointThatTurnsWithoutEndGoesOnWhereItWraps) {
+TEST(DbcTurns, TheCounterOfAContinuousJointContinuesAcrossItsWrap) {
   Diagnostics diagnostics;
   DbcStreamConfig config;
   config.signals = {mapped("Axis", "Angle", 0)};
@@ -439,7 +439,7 @@ TEST(DbcTurns, ACounterOfAJointThatTurnsWithoutEndGoesOnWhereItWraps) {
   EXPECT_NEAR(recorder.samples[1].position[0] - recorder.samples[0].position[0], 0.010, 1e-9);
   sut.restart();
   sut.receive(frame(256, {0x04, 0x00}), {3});
-  EXPECT_NEAR(recorder.samples[2].position[0], 0.004, 1e-9) << "a log that begins anew counts anew";
+  EXPECT_NEAR(recorder.samples[2].position[0], 0.004, 1e-9) << "a repeated log starts from its own values";
 }
 
 TEST_F(DbcSessionTest, EqualLimitsAreNone) {
@@ -492,7 +492,7 @@ TEST(DbcPlan, MistakesStandAtTheirPlaceInTheCellFile) {
   }
 }
 
-TEST(DbcPlan, AFaultOfWhatTheStreamUsesIsAnErrorInTheDbc) {
+TEST(DbcPlan, AFaultInAUsedMessageOrSignalIsAnErrorInTheDbc) {
   const auto told = [](const std::string& text) {
     Diagnostics diagnostics;
     DbcStreamConfig config;
@@ -509,7 +509,7 @@ TEST(DbcPlan, AFaultOfWhatTheStreamUsesIsAnErrorInTheDbc) {
               HasSubstr("error: the stream uses Axis.Angle: expected (factor,offset)"));
   EXPECT_THAT(told(kAxisOnly + "SIG_VALTYPE_ 256 Angle : 9;\n"),
               HasSubstr("error: the stream uses Axis.Angle: expected the type of the value"))
-      << "else a float would be read as an integer";
+      << "otherwise a float would be read as an integer";
   EXPECT_THAT(told(kAxisOnly + "BO_ 257 Axis: 8 A\n SG_ Angle : 0|8@1+ (1,0) [0|0] \"\" A\n"),
               HasSubstr("error: the stream uses Axis: the message Axis appears twice"));
 }

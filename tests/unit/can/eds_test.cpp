@@ -89,11 +89,11 @@ TEST(Eds, TellsAllMistakesWithTheirPlaces) {
         "f.eds:14:3: warning: the object 0x6000 is listed", "f.eds:15:3: warning: 'nonsense' is not the index"}) {
     EXPECT_THAT(told, HasSubstr(expected));
   }
-  EXPECT_TRUE(diagnostics.ok()) << "nobody uses these objects";
+  EXPECT_TRUE(diagnostics.ok()) << "the cell does not use these objects";
   EXPECT_NE(sut.objects.find({0x1001, 0}), nullptr) << "what could be read is there";
 }
 
-// TPDO1 of statusword and position, with `more` lines of the file behind it.
+// An EDS with TPDO1 of statusword and position, followed by the lines `more`.
 std::string drive_text(const std::string& more) {
   return "[1A00]\nObjectType=9\nSubNumber=3\n"
          "[1A00sub0]\nDataType=5\nDefaultValue=2\n"
@@ -115,7 +115,7 @@ ReadDrive read_drive(const std::string& text, std::uint8_t node = 3) {
   return read;
 }
 
-TEST(Eds, CommentsOfEveryKindAreNoPartOfTheValues) {
+TEST(Eds, IgnoresCommentsOfEveryKindBehindValues) {
   for (const char* comment : {" ; position", "; position", "\t# position", " // position", ";"}) {
     const ReadDrive sut = read_drive(
         drive_text("# by a tool\n// 2024\n" + kPosition + comment + "\nPDOMapping=1;yes\nAccessType=rw ; always\n"));
@@ -133,7 +133,7 @@ TEST(Eds, ATextKeepsItsSemicolons) {
   EXPECT_EQ(std::string(value.begin(), value.end()), "AX;8 // rev #2");
 }
 
-TEST(Eds, NumbersAreReadInEverySpellingOfTheTools) {
+TEST(Eds, ReadsNumbersInTheSpellingsOfAllTools) {
   const ReadDrive sut = read_drive(
       "[2000]\nDataType=7\nDefaultValue=0X3ED\n[2001]\nDataType=5\nDefaultValue=\"0x60\"\n"
       "[2002]\nDataType=5\nDefaultValue=009\n[2003]\nDataType=7\nDefaultValue= $NodeID + 0x180 ; TPDO1\n");
@@ -144,7 +144,7 @@ TEST(Eds, NumbersAreReadInEverySpellingOfTheTools) {
   EXPECT_EQ(sut.device.objects.integer({0x2003, 0}), 0x183);
 }
 
-TEST(Eds, LinesThatNobodyUsesAreWarnings) {
+TEST(Eds, WarnsOfFaultsInUnusedLines) {
   for (const char* line :
        {"[2010]\nDataType=5\nDefaultValue=0x1FF", "[2010]\nDataType=7\nDefaultValue=-1", "[2010]\nDefaultValue=1",
         "[2010]\nDataType=5\nAccessType=read/write", "[2010]\nDataType=5\nCompactSubObj=300",
@@ -161,7 +161,7 @@ TEST(Eds, LinesThatNobodyUsesAreWarnings) {
   }
 }
 
-TEST(Eds, LinesThatAStreamUsesAreErrorsWithTheirPlace) {
+TEST(Eds, FaultsInLinesThatAStreamUsesAreErrorsWithTheirPlace) {
   for (const auto& [line, place] : {std::pair("[1A00sub2]\nDataType=5\nDefaultValue=0x60640020", "f.eds:12:14"),
                                     std::pair("[1A00sub2]\nDataType=7\nDefaultValue=x", "f.eds:12:14"),
                                     std::pair("[1A00sub2]\nDefaultValue=0x60640020", "f.eds:10")}) {
@@ -175,10 +175,10 @@ TEST(Eds, LinesThatAStreamUsesAreErrorsWithTheirPlace) {
   EXPECT_THAT(cob_id.diagnostics.text(), HasSubstr("f.eds:15:14: error: the stream uses 0x1800:01"));
   const ReadDrive off = read_drive(
       drive_text("[1A00sub2]\nDataType=7\nDefaultValue=x\n[1800sub1]\nDataType=7\nDefaultValue=0x80000180\n"));
-  EXPECT_TRUE(off.diagnostics.ok()) << "a TPDO that is switched off is used by nobody";
+  EXPECT_TRUE(off.diagnostics.ok()) << "no stream uses a TPDO that is switched off";
 }
 
-TEST(Eds, AGapInAMappingIsAnErrorSinceItMovesTheValuesBehindIt) {
+TEST(Eds, AGapInAMappingIsAnError) {
   const std::string text =
       "[1A00sub0]\nDataType=5\nDefaultValue=2\n[1A00sub1]\nDataType=7\n[1A00sub2]\nDataType=7\n"
       "DefaultValue=0x60640020\n";
@@ -198,7 +198,7 @@ TEST(Eds, ADcfOfAnotherNodeIsReported) {
               HasSubstr("TPDO1 of node 3 has the COB-ID 0x185, which CiA 301 gives to node 5"));
 }
 
-TEST(Eds, ADriveIsKnownByItsProfileOrItsPosition) {
+TEST(Eds, ADriveIsRecognizedByItsProfileOrItsPosition) {
   const auto is_drive_of = [](const char* text) {
     Diagnostics diagnostics;
     return is_drive(parse_eds(text, "f.eds", 1, diagnostics));
@@ -209,7 +209,7 @@ TEST(Eds, ADriveIsKnownByItsProfileOrItsPosition) {
   EXPECT_FALSE(is_drive_of("[1001]\nDataType=5\n"));
 }
 
-TEST(Eds, LineEndsOfEverySystemAreRead) {
+TEST(Eds, ReadsLineEndsOfEverySystem) {
   for (const char* end : {"\n", "\r\n", "\r"}) {
     std::string text;
     for (const char* line : {"[1000]", "DataType=7", "DefaultValue=402", "\x1A"}) text += line + std::string(end);

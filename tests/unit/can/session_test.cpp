@@ -46,7 +46,7 @@ TEST_F(SessionTest, EventDrivenTpdoMakesASampleAtOnce) {
   EXPECT_EQ(sut->nodes()[1].state, Cia402State::operation_enabled);
 }
 
-TEST_F(SessionTest, TheCounterOfAJointThatTurnsWithoutEndGoesOnWhereItWraps) {
+TEST_F(SessionTest, TheCounterOfAContinuousJointContinuesAcrossItsWrap) {
   config.nodes[0].turns = true;
   start();
   tpdo(3, std::numeric_limits<std::int32_t>::max() - 10);
@@ -57,10 +57,10 @@ TEST_F(SessionTest, TheCounterOfAJointThatTurnsWithoutEndGoesOnWhereItWraps) {
   EXPECT_NEAR(out.samples[2].position[0], out.samples[0].position[0], 1e-9) << "and back";
   tpdo(4, std::numeric_limits<std::int32_t>::max());
   tpdo(4, std::numeric_limits<std::int32_t>::min());
-  EXPECT_LT(out.samples[4].position[1], 0) << "one with a range does not turn: a jump is shown as one";
+  EXPECT_LT(out.samples[4].position[1], 0) << "the position of a joint with a range is not continued";
 }
 
-TEST_F(SessionTest, CountersOfAnyLengthAndRangeGoOn) {
+TEST_F(SessionTest, CountersOfAnyLengthAndRangeContinueAcrossTheirWrap) {
   struct Case {
     std::uint8_t bits;
     std::int64_t lower, upper;
@@ -86,7 +86,7 @@ TEST_F(SessionTest, CountersOfAnyLengthAndRangeGoOn) {
   }
 }
 
-TEST_F(SessionTest, ADriveThatBootsCountsAnew) {
+TEST_F(SessionTest, TheCounterOfADriveThatBootsIsNotContinued) {
   config.nodes[0].turns = true;
   start();
   tpdo(3, std::numeric_limits<std::int32_t>::max() - 10);

@@ -62,7 +62,8 @@ std::vector<std::filesystem::path> shipped_files() {
   return files;
 }
 
-// A master's tool takes a default of the EDS for the value of the drive. One that follows from the cell file has none.
+// Tools of masters assume that the drive has the defaults of the EDS. So objects that depend on the cell file have
+// none.
 TEST(ServoEds, GivesOnlyValuesThatEveryDriveHas) {
   constexpr std::uint8_t kNode = 5;
   DriveConfig other = test_drive();
@@ -93,9 +94,9 @@ TEST(ServoEds, GivesOnlyValuesThatEveryDriveHas) {
   }
 }
 
-// canopen for Python and lely's dcf tools read "$NODEID+0x180" and numbers that fit; they lose a bare $NODEID, and
-// refuse an overflow (tests/peers/eds_files.py asks them).
-TEST(ShippedEds, NumbersAreInTheFormThatOtherToolsRead) {
+// canopen for Python and lely's dcf tools read "$NODEID+0x180" and numbers that fit the type; they lose a bare $NODEID
+// and refuse an overflow (tests/peers/eds_files.py runs them).
+TEST(ShippedEds, NumbersHaveAFormThatOtherToolsRead) {
   const std::regex number("(\\$NODEID\\+)?(0x[0-9A-F]+|[0-9]+)", std::regex::icase);
   const auto files = shipped_files();
   ASSERT_GE(files.size(), 3U);
@@ -110,7 +111,7 @@ TEST(ShippedEds, NumbersAreInTheFormThatOtherToolsRead) {
       EXPECT_TRUE(std::regex_match(unsigned_text, match, number)) << file << " [" << name << "] " << value->text;
       const bool is_identifier = name == "1014" || name == "1018sub4" || name.starts_with("1200") ||
                                  name.starts_with("14") || name.starts_with("18");
-      EXPECT_TRUE(is_identifier || !match[1].matched) << file << " [" << name << "] has nothing to do with the node";
+      EXPECT_TRUE(is_identifier || !match[1].matched) << file << " [" << name << "] does not depend on the node";
     }
     for (const int node : {1, 127}) {
       Diagnostics diagnostics;
@@ -120,8 +121,8 @@ TEST(ShippedEds, NumbersAreInTheFormThatOtherToolsRead) {
   }
 }
 
-// What lely's dcf tools check, too.
-TEST(ShippedEds, ListsAndSubNumbersCountWhatIsThere) {
+// lely's dcf tools check this too.
+TEST(ShippedEds, ListsAndSubNumbersMatchTheSections) {
   for (const auto& file : shipped_files()) {
     const IniFile ini = ini_of(file);
     std::size_t listed = 0;

@@ -162,7 +162,7 @@ TEST_F(Safety, ALostMasterIsAFault) {
   EXPECT_NEAR(master.drive.joint_velocity(), 0, 1e-9);
 }
 
-TEST_F(Safety, ErrorsEndWithTheHeartbeatThatReturnsUnlessTheyAreAFault) {
+TEST_F(Safety, AReturningHeartbeatClearsTheErrorUnlessItIsAFault) {
   for (const int option : {0, 1, 2, 3}) {
     DriveMaster master;
     EXPECT_EQ(master.write16(0x6007, option), 0U);

@@ -1,4 +1,4 @@
-// Drives of joints that turn without end: positions begin anew at the ends of their range, the axis goes on.
+// Drives of continuous joints: the position wraps at the ends of its range, the axis continues.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -19,11 +19,11 @@ DriveConfig turning_drive(double start) {
 }
 
 struct Turning : testing::Test {
-  // At the end of what 32 bits count: 1000 increments a rad.
+  // Starts near the highest value of 32 bits: 1000 increments per rad.
   DriveMaster master{turning_drive(kHighest / 1000 - 2)};
 };
 
-TEST_F(Turning, ProfileVelocityGoesOnBeyondTheEndOfTheCounter) {
+TEST_F(Turning, ProfileVelocityContinuesBeyondTheEndOfTheCounter) {
   EXPECT_EQ(master.object(0x607D, 2), std::numeric_limits<std::int32_t>::max()) << "no limit";
   const double before = master.drive.joint_position();
   master.mode(3);
@@ -32,13 +32,13 @@ TEST_F(Turning, ProfileVelocityGoesOnBeyondTheEndOfTheCounter) {
   master.run(2s);
   EXPECT_NEAR(master.drive.joint_velocity(), 5, 0.05);
   EXPECT_GT(master.drive.joint_position(), before + 8);
-  EXPECT_LT(master.object(0x6064), 0) << "the counter has begun anew";
+  EXPECT_LT(master.object(0x6064), 0) << "the counter has wrapped";
   const double all = 4'294'967'296.0;
   EXPECT_NEAR(static_cast<double>(master.object(0x6064)), 1000 * master.drive.joint_position() - all, 2);
   EXPECT_FALSE(master.status(11)) << "no internal limit";
 }
 
-TEST_F(Turning, ACyclicTargetBeyondTheEndIsNear) {
+TEST_F(Turning, ACyclicTargetBeyondTheEndIsReachedByTheShorterWay) {
   master.mode(8);
   master.enable();
   const double before = master.drive.joint_position();
@@ -62,7 +62,7 @@ struct TurningRange : testing::Test {
     master.mode(1);
     master.enable();
   }
-  // The way to a target in rad.
+  // Moves to the target; returns the distance in rad.
   double way_to(std::int64_t target) {
     const double before = master.drive.joint_position();
     EXPECT_EQ(master.write32(0x607A, target), 0U);
@@ -86,7 +86,7 @@ TEST_F(TurningRange, PositionsStayInTheirRange) {
   EXPECT_LT(master.drive.joint_position(), -12);
 }
 
-TEST_F(TurningRange, TheOptionSaysWhichWayRoundATargetIsReached) {
+TEST_F(TurningRange, ThePositioningOptionSelectsTheDirectionToATarget) {
   EXPECT_NEAR(way_to(1000), 1, 0.01);
   EXPECT_NEAR(way_to(5500), 4.5, 0.01) << "as a linear axis";
   EXPECT_EQ(master.write(0x60F2, 0, 0xC0, 2), 0U);

@@ -154,13 +154,13 @@ TEST_F(Slave, ShortPdosAreToldOnce) {
   EXPECT_EQ(master.object(0x1003, 0), 2);
 }
 
-TEST_F(Slave, ASyncOfWrongLengthIsToldOnceUntilOneIsRight) {
+TEST_F(Slave, ReportsASyncOfWrongLengthOnceUntilOneIsCorrect) {
   master.receive(frame(0x000, {0x01, 0x05}));
   master.take();
   for (int i = 0; i < 100; ++i) master.receive(frame(0x080, {0x01}));
   EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8240}));
   EXPECT_EQ(master.object(0x1001), 0x11);
-  EXPECT_EQ(std::ranges::count(master.frames, 0x285U, &CanFrame::id), 100) << "it is a SYNC all the same";
+  EXPECT_EQ(std::ranges::count(master.frames, 0x285U, &CanFrame::id), 100) << "the frame still counts as a SYNC";
   master.take();
   master.receive(frame(0x080, {}));
   EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x0000}));
@@ -173,7 +173,7 @@ TEST_F(Slave, ASyncOfWrongLengthIsToldOnceUntilOneIsRight) {
   EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8240, 0x0000}));
 }
 
-TEST_F(Slave, ATpdoThatAllowsItIsSentOnRequest) {
+TEST_F(Slave, SendsATpdoOnRequestIfItAllowsRtr) {
   CanFrame request = frame(0x285, {});
   request.remote = true;
   master.receive(request);
@@ -195,12 +195,12 @@ TEST_F(Slave, ATpdoThatAllowsItIsSentOnRequest) {
   EXPECT_TRUE(master.take().empty());
 }
 
-TEST_F(Slave, AnRpdoThatIsLateIsTold) {
+TEST_F(Slave, ReportsALateRpdo) {
   EXPECT_EQ(write(0x1400, 5, 50, 2), 0U);
   master.receive(frame(0x000, {0x01, 0x05}));
   master.take();
   master.run(200ms);
-  EXPECT_TRUE(master.emergencies().empty()) << "the time begins with the first one";
+  EXPECT_TRUE(master.emergencies().empty()) << "the timer starts with the first RPDO";
   for (int i = 0; i < 5; ++i) {
     master.receive(frame(0x205, {0x06, 0x00}));
     master.run(40ms);
@@ -215,10 +215,10 @@ TEST_F(Slave, AnRpdoThatIsLateIsTold) {
   master.receive(frame(0x000, {0x80, 0x05}));
   master.take();
   master.run(200ms);
-  EXPECT_TRUE(master.emergencies().empty()) << "RPDOs are for operational nodes";
+  EXPECT_TRUE(master.emergencies().empty()) << "only operational nodes receive RPDOs";
 }
 
-TEST_F(Slave, ResetCommunicationLeavesTheParametersOfTheDriveAlone) {
+TEST_F(Slave, ResetCommunicationKeepsTheParametersOfTheDrive) {
   EXPECT_EQ(write(0x6081, 0, 1234, 4), 0U);
   EXPECT_EQ(write(0x6060, 0, 1, 1), 0U);
   EXPECT_EQ(write(0x1017, 0, 100, 2), 0U);
@@ -243,11 +243,11 @@ TEST_F(Slave, StoresParametersOnCommandUntilTheyAreRestored) {
   EXPECT_EQ(write(0x607A, 0, 77, 4), 0U);
   EXPECT_EQ(write(0x1010, 1, 1, 4), 0x0800'0020U) << "no signature";
   EXPECT_EQ(write(0x1010, 1, kSaveWord, 4), 0U);
-  EXPECT_EQ(master.object(0x1010, 1), 1) << "what it can do, not what was written";
+  EXPECT_EQ(master.object(0x1010, 1), 1) << "reading returns the capability, not the signature";
   master.receive(frame(0x000, {0x81, 0x05}));
   EXPECT_EQ(master.object(0x6081), 1234);
   EXPECT_EQ(master.object(0x1017), 100);
-  EXPECT_EQ(master.object(0x607A), 0) << "a target is no parameter";
+  EXPECT_EQ(master.object(0x607A), 0) << "a target is not a parameter";
   EXPECT_EQ(write(0x1011, 1, kSaveWord, 4), 0x0800'0020U);
   EXPECT_EQ(write(0x1011, 1, kLoadWord, 4), 0U);
   EXPECT_EQ(master.object(0x6081), 1234) << "in force after a reset";
@@ -256,7 +256,7 @@ TEST_F(Slave, StoresParametersOnCommandUntilTheyAreRestored) {
   EXPECT_EQ(master.object(0x1017), 0);
 }
 
-TEST_F(Slave, EmergenciesKeepTheirInhibitTime) {
+TEST_F(Slave, SendsEmergenciesWithTheirInhibitTime) {
   EXPECT_EQ(write(0x1015, 0, 200, 2), 0U);  // 20 ms
   master.receive(frame(0x000, {0x01, 0x05}));
   master.run(30ms);
@@ -281,9 +281,9 @@ TEST_F(Slave, HasTheObjectsThatMastersExpect) {
   EXPECT_EQ(master.object(0x1200, 1), 0x605);
   EXPECT_EQ(master.object(0x1200, 2), 0x585);
   EXPECT_EQ(write(0x1006, 0, 10'000, 4), 0U);
-  EXPECT_EQ(write(0x1019, 0, 10, 1), 0x0800'0022U) << "the counter is not changed while SYNC has a period";
+  EXPECT_EQ(write(0x1019, 0, 10, 1), 0x0800'0022U) << "the counter cannot change while SYNC has a period";
   EXPECT_EQ(write(0x60B8, 0, 0, 2), 0U);
-  EXPECT_EQ(write(0x60B8, 0, 1, 2), 0x0609'0030U) << "it has no touch probe";
+  EXPECT_EQ(write(0x60B8, 0, 1, 2), 0x0609'0030U) << "there is no touch probe";
   EXPECT_EQ(write(0x607E, 0, 0x80, 1), 0x0609'0030U);
 }
 

@@ -354,7 +354,7 @@ TEST_F(SharedNodes, OpenAndCloseWhileTheOthersRunAndTheirStatusIsAskedFor) {
   EXPECT_EQ(count_passed(0x703), 1U) << "the drive that stays was not restarted";
 }
 
-// A channel whose interface appears, whose log is repeated, and whose queue is full, as the test says.
+// Switches of a channel: its interface appears, its log is repeated, its queue is full.
 struct StagedBus {
   std::atomic<bool> there{false};
   std::atomic<bool> refuses{false};
@@ -437,18 +437,18 @@ struct StagedNodes : testing::Test {
   std::unique_ptr<JointStream> stream;
 };
 
-TEST_F(StagedNodes, BootOnceTheInterfaceThatTheyWaitForIsThere) {
+TEST_F(StagedNodes, BootWhenTheMissingInterfaceAppears) {
   ASSERT_TRUE(stream->open(sink));
-  EXPECT_TRUE(becomes_true([&] { return sink.count > 0; })) << "the drive is there, the bus is not";
+  EXPECT_TRUE(becomes_true([&] { return sink.count > 0; })) << "the drive runs without the bus";
   EXPECT_EQ(stream->status().waits_for, "late0");
   EXPECT_THAT(stream->status().condition, testing::StartsWith("waits for late0"));
   EXPECT_EQ(bus.count(0x709), 0U);
   bus.there = true;
-  EXPECT_TRUE(becomes_true([&] { return bus.count(0x709) == 1; })) << "the boot-up message that nobody has heard";
+  EXPECT_TRUE(becomes_true([&] { return bus.count(0x709) == 1; })) << "the boot-up message is sent again";
   EXPECT_TRUE(becomes_true([&] { return stream->status().waits_for.empty(); }));
 }
 
-TEST_F(StagedNodes, TellWhenALogBeginsAnew) {
+TEST_F(StagedNodes, MarkTheFirstSampleOfEachPassOfALog) {
   bus.there = true;
   ASSERT_TRUE(stream->open(sink));
   EXPECT_TRUE(becomes_true([&] { return sink.count > 1; }));
@@ -457,7 +457,7 @@ TEST_F(StagedNodes, TellWhenALogBeginsAnew) {
   EXPECT_TRUE(becomes_true([&] { return sink.beginnings == 2; }));
 }
 
-TEST_F(StagedNodes, FramesThatTheKernelRefusesAreToldWithTheReason) {
+TEST_F(StagedNodes, ReportFramesThatTheKernelRefusesWithTheReason) {
   bus.there = true;
   bus.refuses = true;
   ASSERT_TRUE(stream->open(sink));

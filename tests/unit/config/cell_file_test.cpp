@@ -362,7 +362,7 @@ script = "missing.spt"
   EXPECT_EQ(diagnostics.errors(), 4U) << told;
 }
 
-TEST_F(CellFile, countersOfJointsThatTurnWithoutEndAreMarkedAndMayHaveARange) {
+TEST_F(CellFile, countersOfContinuousJointsAreMarkedAndMayHaveARange) {
   home.write(
       "envlib/turn.mpc",
       "format = 1\n[[node]]\nname = \"T\"\njoint = { type = \"continuous\", axis = [0, 0, 1], velocity_rad_s = 1 }\n"

@@ -151,8 +151,8 @@ TEST_F(ComponentText, charactersOutsideOfAsciiStandInTextsAndCommentsOnly) {
   EXPECT_FALSE(parse("description = \"\"\"\\\n\xCC\xA2\"\"\"\n"));
 }
 
-// Each part of a dotted key is a table in a table, which toml++ destroys by recursion.
-TEST_F(ComponentText, KeysOfTooManyPartsAreRefusedWithTheirPlace) {
+// Each part of a dotted key is a nested table, which toml++ destroys recursively.
+TEST_F(ComponentText, KeysWithTooManyPartsAreRefusedWithTheirPlace) {
   const auto key = [](int parts, const std::string& part, const std::string& dot) {
     std::string out = part;
     for (int i = 1; i < parts; ++i) out += dot + part;
@@ -174,14 +174,14 @@ TEST_F(ComponentText, KeysOfTooManyPartsAreRefusedWithTheirPlace) {
   }
 }
 
-TEST_F(ComponentText, KeysOfAsManyPartsAsAreAcceptedAreRead) {
+TEST_F(ComponentText, KeysWithTheHighestNumberOfPartsAreRead) {
   std::string key = "a";
   for (int i = 1; i < 32; ++i) key += ".a";
   parse(key + " = 1\n");
   EXPECT_THAT(findings(), Not(HasSubstr("parts")));
   EXPECT_FALSE(parse(key + ".a = 1\n"));
   EXPECT_THAT(findings(), HasSubstr("a key has more than 32 parts"));
-  // Dots of texts, comments and numbers are none of a key.
+  // Dots in strings, comments and numbers do not belong to a key.
   const std::string dots(200, '.');
   std::string numbers = "0.5";
   for (int i = 0; i < 100; ++i) numbers += ", 0.5";
@@ -189,7 +189,7 @@ TEST_F(ComponentText, KeysOfAsManyPartsAsAreAcceptedAreRead) {
   EXPECT_THAT(findings(), Not(HasSubstr("parts")));
 }
 
-TEST_F(ComponentText, ListsAndTablesNestedTooDeepAreRefusedWithTheirPlace) {
+TEST_F(ComponentText, ListsAndTablesNestedTooDeeplyAreRefusedWithTheirPlace) {
   const auto nested = [](int depth) { return "a = " + std::string(depth, '[') + std::string(depth, ']') + "\n"; };
   parse(nested(32));
   EXPECT_THAT(findings(), Not(HasSubstr("nested")));

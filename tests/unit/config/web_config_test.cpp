@@ -71,7 +71,7 @@ TEST_F(WebConfig, AddressesThatOthersReachHaveToBeMeant) {
     EXPECT_TRUE(load("[web]\naddress = \"" + std::string(address) + "\"\n")) << address;
 }
 
-TEST_F(WebConfig, WarnsOfWhatOthersReach) {
+TEST_F(WebConfig, WarnsIfOtherMachinesOrOriginsReachThePage) {
   ASSERT_TRUE(
       load("[web]\nallow_remote = true\naddress = \"0.0.0.0\"\norigins = [\"https://a.example\", \"file://\"]\n"));
   EXPECT_EQ(diagnostics.warnings(), 3U) << diagnostics.text();
@@ -108,7 +108,7 @@ TEST_F(WebConfig, OriginsAreFew) {
   EXPECT_THAT(refusal("origins = [" + sixteen + "\"https://b\"]"), HasSubstr("17 origins, but at most 16"));
 }
 
-// 203.0.113.0/24 and 2001:db8::/32 are for documents (RFC 5737, RFC 3849): no machine has them.
+// 203.0.113.0/24 and 2001:db8::/32 are reserved for documentation (RFC 5737, RFC 3849): no machine has them.
 TEST_F(WebConfig, WarnsOfAnAddressThatThisMachineDoesNotHave) {
   for (const char* absent : {"203.0.113.77", "2001:db8::7"}) {
     const std::string address = "\"" + std::string(absent) + "\"";

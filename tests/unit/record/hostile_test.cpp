@@ -138,7 +138,7 @@ TEST(HostileRecording, AChunkThatBlowsUpIsRefused) {
   }
 }
 
-// A small file of `chunks` chunks, of `bytes` bytes each that are all `value`.
+// A small file with `chunks` chunks, each of which decompresses to `bytes` times `value`.
 Bytes blown_up(int chunks, std::size_t bytes, std::byte value) {
   Compressor compressor(Compression::zstd);
   const Bytes content(bytes, value);
@@ -154,7 +154,7 @@ Bytes blown_up(int chunks, std::size_t bytes, std::byte value) {
 
 constexpr std::uint64_t kMega = 1'000'000;
 
-TEST(HostileRecording, ChunksWithMoreBytesThanAreAcceptedInAllAreRefused) {
+TEST(HostileRecording, ChunksBeyondTheTotalLimitAreRefused) {
   const Bytes file = blown_up(5, 8 * kMega, std::byte{0});
   ASSERT_LT(file.size(), 10'000U);
   const MemorySource source(file);
@@ -168,7 +168,7 @@ TEST(HostileRecording, ChunksWithMoreBytesThanAreAcceptedInAllAreRefused) {
   EXPECT_FALSE(Reader::open(source, limits));
   MemorySink out;
   EXPECT_FALSE(recover(source, out, Compression::none, limits));
-  // For those who know where it is from.
+  // A caller can raise the limit.
   EXPECT_EQ(scanned(file, found, {.decompressed_bytes = 40 * kMega}).chunks.size(), 5U);
   EXPECT_EQ(scanned(file, found, {.decompressed_bytes = 0, .decompressed_ratio = 100'000}).chunks.size(), 5U);
 }
@@ -183,7 +183,7 @@ TEST(HostileRecording, ChunksBeyondTheLimitCanBeLeftOutAndAreCounted) {
   EXPECT_EQ(reader->statistics().chunks, 5U);
 }
 
-TEST(HostileRecording, AnIndexedFileIsReadByTheSameLimit) {
+TEST(HostileRecording, AnIndexedFileHasTheSameLimit) {
   const Bytes file = small_recording(Compression::zstd);
   const MemorySource source(file);
   std::uint64_t bytes = 0;
@@ -197,7 +197,7 @@ TEST(HostileRecording, AnIndexedFileIsReadByTheSameLimit) {
   ASSERT_FALSE(read);
   EXPECT_NE(read.error().remedy.find("--decompressed-limit"), std::string::npos) << read.error().text();
   EXPECT_LE(bytes, 3000U);
-  // What is not compressed cannot blow up.
+  // Uncompressed chunks do not count.
   const Bytes plain = small_recording(Compression::none);
   const MemorySource plain_source(plain);
   auto plain_reader = Reader::open(plain_source, {.decompressed_bytes = 0, .decompressed_ratio = 0});
@@ -205,10 +205,10 @@ TEST(HostileRecording, AnIndexedFileIsReadByTheSameLimit) {
   EXPECT_TRUE(plain_reader->read({}, count));
 }
 
-TEST(HostileRecording, NoRecordHasTheKindZero) {
+TEST(HostileRecording, ARecordWithOpcodeZeroEndsItsChunk) {
   Collector found;
   const ScanReport report = scanned(blown_up(2, 8 * kMega, std::byte{0}), found);
-  EXPECT_EQ(report.faults.count(), 2U) << "one for each chunk, not one for each nine bytes";
+  EXPECT_EQ(report.faults.count(), 2U) << "one for each chunk, not one for every nine bytes";
   EXPECT_NE(first_fault(report).find("no whole record at its byte 0"), std::string::npos) << first_fault(report);
 }
 
@@ -223,11 +223,11 @@ TEST(HostileRecording, ManyFaultsAreCountedAndTheFirstAreKept) {
   append(Chunk{0, 0, records.size(), 0, "", records}, file);
   Collector found;
   const ScanReport report = scanned(file, found);
-  EXPECT_EQ(report.faults.count(), kMany + 1U);  // with the end that is not there
+  EXPECT_EQ(report.faults.count(), kMany + 1U);  // one more for the missing end
   EXPECT_EQ(report.faults.first().size(), Faults::kKept);
 }
 
-TEST(HostileRecording, TellsHowFarItsReadingHasCome) {
+TEST(HostileRecording, ReportsTheProgressOfReading) {
   const Bytes file = small_recording(Compression::zstd);
   std::uint64_t last = 0;
   int calls = 0;

@@ -55,7 +55,7 @@ TEST(RtdeMessages, DataComesBackAsItWasSent) {
   EXPECT_FALSE(decode_data(std::span(sent).subspan(4), 9));
 }
 
-TEST(RtdeMessages, AllDataComeBackAsTheyWereSent) {
+TEST(RtdeMessages, AllVariablesComeBackAsTheyWereSent) {
   RobotData data{.timestamp_s = 1.0};
   data.has_all = true;
   data.current = {1, 2, 3, 4, 5, 6};
@@ -73,7 +73,7 @@ TEST(RtdeMessages, AllDataComeBackAsTheyWereSent) {
   EXPECT_EQ(runtime_state_text(read->runtime_state), "paused");
 }
 
-TEST(RtdeMessages, EveryModeOfTheGuideIsAWord) {
+TEST(RtdeMessages, EveryModeOfTheRtdeGuideHasAText) {
   for (int mode = 1; mode <= 13; ++mode) EXPECT_EQ(safety_mode_text(mode).find("mode "), std::string::npos) << mode;
   EXPECT_EQ(safety_mode_text(10), "validating a joint");
   EXPECT_EQ(safety_mode_text(14), "safety mode 14");

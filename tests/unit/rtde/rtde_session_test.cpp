@@ -138,7 +138,7 @@ TEST(RtdeSession, PackagesThatAreNotNewerAreRefused) {
   EXPECT_EQ(link.session.counters().samples, 2U);
 }
 
-TEST(RtdeSession, AnOlderControllerIsAskedForWhatItHas) {
+TEST(RtdeSession, AnOlderControllerIsAskedForFewerVariables) {
   Link link;
   link.receive(accepted(PackageType::version, true));
   link.receive(outputs_answer({.recipe = 1, .types = std::string(kVariableTypes) + ",NOT_FOUND"}));
@@ -148,11 +148,11 @@ TEST(RtdeSession, AnOlderControllerIsAskedForWhatItHas) {
   link.receive(accepted(PackageType::start, true));
   link.data(1.0);
   ASSERT_EQ(link.out.samples.size(), 1U);
-  EXPECT_EQ(link.out.samples[0].effort[5], 0.0) << "not known";
+  EXPECT_EQ(link.out.samples[0].effort[5], 0.0) << "unknown";
   EXPECT_FALSE(link.session.speed_scaling());
 }
 
-TEST(RtdeSession, OneStampFarAheadIsRefusedAndThoseBehindItAreNot) {
+TEST(RtdeSession, OneStampFarAheadIsRefusedAndLaterOnesAreAccepted) {
   Link link;
   link.run();
   link.data(1.000);
@@ -164,7 +164,7 @@ TEST(RtdeSession, OneStampFarAheadIsRefusedAndThoseBehindItAreNot) {
   EXPECT_EQ(link.session.counters().rejected, 1U);
 }
 
-TEST(RtdeSession, ATimeThatBeganAnewIsTakenAfterSomePackages) {
+TEST(RtdeSession, ARestartedTimeIsAcceptedAfterThreePackages) {
   for (const double begin : {0.0, 1e6}) {
     Link link;
     link.run();
@@ -175,12 +175,12 @@ TEST(RtdeSession, ATimeThatBeganAnewIsTakenAfterSomePackages) {
     }
     EXPECT_EQ(link.session.counters().samples, 1U + 8U) << begin;
     EXPECT_EQ(link.session.counters().rejected, 2U) << begin;
-    EXPECT_EQ(link.session.counters().lost, 0U) << "no gap: another time";
+    EXPECT_EQ(link.session.counters().lost, 0U) << "the time has changed; nothing is lost";
     EXPECT_EQ(link.out.messages.size(), 1U);
   }
 }
 
-TEST(RtdeSession, ALongPauseOfTheControllerIsNoOtherTime) {
+TEST(RtdeSession, ALongPauseOfTheControllerIsNotARestartedTime) {
   Link link;
   link.run();
   link.data(1.0);
@@ -203,13 +203,13 @@ TEST(RtdeSession, EffortSpeedAndProgramComeWithTheJoints) {
   robot.runtime_state = 2;
   link.receive(data_package(robot, kRecipe), 1.0);
   ASSERT_EQ(link.out.samples.size(), 1U);
-  EXPECT_EQ(link.out.samples[0].effort[0], -30.0) << "the moment that the controller aims at, in the joint's direction";
-  EXPECT_EQ(link.out.samples[0].effort[1], 25.0) << "measured: current and constant";
+  EXPECT_EQ(link.out.samples[0].effort[0], -30.0) << "target moment of the controller, in the joint's direction";
+  EXPECT_EQ(link.out.samples[0].effort[1], 25.0) << "measured current times torque constant";
   EXPECT_EQ(link.session.speed_scaling(), 0.5);
   EXPECT_EQ(runtime_state_text(*link.session.runtime_state()), "playing");
 }
 
-TEST(RtdeSession, PackagesThatAreRefusedAreKnownWithTheirReason) {
+TEST(RtdeSession, KeepsTheReasonOfTheNewestRefusedPackage) {
   Link link;
   link.run();
   link.data(1.0);
@@ -221,7 +221,7 @@ TEST(RtdeSession, PackagesThatAreRefusedAreKnownWithTheirReason) {
   EXPECT_FALSE(link.session.last_refused().known()) << "the newest one was good";
 }
 
-TEST(RtdeSession, BytesThatAreDividedInTheWrongPlacesEndTheConnection) {
+TEST(RtdeSession, BytesDividedInTheWrongPlacesEndTheSession) {
   Link link;
   link.run();
   for (int i = 0; i < 100 && !link.session.failed(); ++i) link.receive({0, 5, 99, 1, 2});
@@ -240,7 +240,7 @@ TEST(RtdeSession, WhatAControllerRefusesEndsTheConnectionWithTheReason) {
   Link variables;
   variables.receive(accepted(PackageType::version, true));
   variables.receive(outputs_answer({.recipe = 0, .types = "DOUBLE,NOT_FOUND"}));
-  EXPECT_FALSE(variables.session.failed()) << "an older controller: it is asked for less";
+  EXPECT_FALSE(variables.session.failed()) << "an older controller is asked for fewer variables";
   variables.receive(outputs_answer({.recipe = 0, .types = "DOUBLE,NOT_FOUND"}));
   EXPECT_TRUE(variables.session.failed());
   EXPECT_NE(variables.out.reasons.back().find("NOT_FOUND"), std::string::npos);

@@ -24,7 +24,7 @@ struct TokenTriesTest : testing::Test {
     return checked.verdict;
   }
   void pass(double s) { now = now + Nanoseconds(static_cast<std::int64_t>(1e9 * s)); }
-  // As many wrong ones as are looked at.
+  // Sends wrong tokens until one is not checked; returns the number of checked ones.
   int exhaust(const std::string& peer) {
     int wrong = 0;
     while (wrong < 1000 && tries(kGuess, peer) == Verdict::wrong) ++wrong;
@@ -36,12 +36,12 @@ struct TokenTriesTest : testing::Test {
   Timestamp now{1'000'000'000};
 };
 
-TEST_F(TokenTriesTest, LooksAtTheFirstTokensOfAPeerOnly) {
+TEST_F(TokenTriesTest, ChecksOnlyTheFirstTokensOfAPeer) {
   EXPECT_EQ(exhaust("10.0.0.1"), static_cast<int>(kWrongTokensAtOnce));
   EXPECT_EQ(checked.verdict, Verdict::unread);
   EXPECT_GE(checked.wait_s, 1);
   EXPECT_LE(checked.wait_s, 1 / kWrongTokensPerSecond);
-  EXPECT_EQ(tries(kToken, "10.0.0.1"), Verdict::unread) << "else guesses would cost nothing";
+  EXPECT_EQ(tries(kToken, "10.0.0.1"), Verdict::unread) << "otherwise guesses would have no cost";
 }
 
 TEST_F(TokenTriesTest, NeverDelaysARightTokenOfAnotherPeer) {
@@ -50,14 +50,14 @@ TEST_F(TokenTriesTest, NeverDelaysARightTokenOfAnotherPeer) {
     EXPECT_EQ(tries(kGuess, "10.0.0.1"), Verdict::unread);
     ASSERT_EQ(tries(kToken, "10.0.0.2"), Verdict::right) << i;
   }
-  // Nor while all of many addresses send wrong ones.
+  // Not even while many addresses send wrong tokens.
   for (int i = 0; i < 2000; ++i) {
     tries(kGuess, "10.1.0." + std::to_string(i));
     ASSERT_EQ(tries(kToken, "10.0.0.2"), Verdict::right) << i;
   }
 }
 
-TEST_F(TokenTriesTest, LooksAgainWhenTheWaitIsOver) {
+TEST_F(TokenTriesTest, ChecksAgainAfterTheWait) {
   exhaust("10.0.0.1");
   const int wait_s = checked.wait_s;
   pass(0.5 * wait_s);
@@ -76,7 +76,7 @@ TEST_F(TokenTriesTest, BoundsWrongTokensOfAllPeersTogether) {
   EXPECT_LE(wrong, 200 + 2 * kAllWrongTokensPerSecond) << "the first of each, and a few";
 }
 
-TEST_F(TokenTriesTest, ATokenThatIsNotSentIsNoGuess) {
+TEST_F(TokenTriesTest, AMissingTokenIsNotAGuess) {
   for (int i = 0; i < 100; ++i) EXPECT_EQ(tries("", "10.0.0.1"), Verdict::none);
   EXPECT_EQ(tries(kToken, "10.0.0.1"), Verdict::right);
   EXPECT_THAT(sut.take_reports(now), IsEmpty());
@@ -89,7 +89,7 @@ TEST_F(TokenTriesTest, ReportsTheAddressAndTheCountButNeverTheToken) {
   for (int i = 0; i < 500; ++i) {
     tries(kGuess, "10.0.0.1");
     pass(0.01);
-    EXPECT_THAT(sut.take_reports(now), IsEmpty()) << "not a line for each";
+    EXPECT_THAT(sut.take_reports(now), IsEmpty()) << "not one line per attempt";
   }
   pass(5);
   const auto lines = sut.take_reports(now);
@@ -104,11 +104,11 @@ TEST_F(TokenTriesTest, KeepsAndReportsABoundedNumberOfPeers) {
   const auto lines = sut.take_reports(now);
   ASSERT_THAT(lines, SizeIs(TokenTries::kMostLines + 1));
   for (const std::string& line : lines) reported += std::stoull(line);
-  EXPECT_EQ(reported, 20'000U) << "none is missing, those that are no longer remembered included";
+  EXPECT_EQ(reported, 20'000U) << "including the forgotten peers";
   EXPECT_THAT(lines.back(), HasSubstr("from other addresses"));
 }
 
-TEST_F(TokenTriesTest, ReportsANameAsText) {
+TEST_F(TokenTriesTest, ReportsAPeerNameAsPrintableText) {
   tries(kGuess, "\x1b[2Ja\n");
   const auto lines = sut.take_reports(now);
   ASSERT_THAT(lines, SizeIs(1));

@@ -106,7 +106,8 @@ class ServoDrive final : private SlaveApplication {
   [[nodiscard]] MotionPoint joint_of(const MotionPoint& demand) const;
   [[nodiscard]] HomingInputs homing_inputs() const;
   [[nodiscard]] double within_limits(double target);
-  // Where a target within that range lies for an axis that has gone round it: by 0x60F2, or `nearest`.
+  // Converts a target within the position range (0x607B) to the position of the axis, which does not wrap. The
+  // direction is the one of 0x60F2, or the shorter way if `nearest`.
   [[nodiscard]] double target_of(double wanted, bool nearest) const;
   [[nodiscard]] TorqueLimits torque_limits() const;
   [[nodiscard]] double halt_deceleration() const;

@@ -164,7 +164,7 @@ void ServoDrive::take_targets() {
   }
 }
 
-// A cyclic target is never half a range away.
+// A cyclic target is always less than half a range away, so that the shorter way is right.
 void ServoDrive::take_position(double target) {
   cyclic_position_.aim(within_limits(target_of(target, true)), parameters_.period);
 }

@@ -12,9 +12,9 @@ constexpr std::uint16_t kHomingAttained = kStatuswordModeBit12;
 constexpr std::uint16_t kHomingError = kStatuswordModeBit13;
 constexpr int kSlowDown = 1;  // option code
 
-// Begins again at both ends of a range.
+// Wraps `value` into the range of `span` increments that starts at `lower`.
 std::int64_t wrapped(double value, double lower, double span) {
-  constexpr double kMost = 9e15;  // whole numbers of a double
+  constexpr double kMost = 9e15;  // a double represents whole numbers exactly up to here
   const auto whole = static_cast<std::int64_t>(std::llround(std::clamp(value, -kMost, kMost) - lower));
   const auto length = static_cast<std::int64_t>(span);
   const std::int64_t rest = whole % length;
@@ -119,7 +119,7 @@ void ServoDrive::write_objects() {
   write(0x6041, statusword());
   write(0x6061, static_cast<int>(mode_));
   constexpr double kLowest = std::numeric_limits<std::int32_t>::min();
-  constexpr double kAll = 4'294'967'296.0;  // that 32 bits count
+  constexpr double kAll = 4'294'967'296.0;  // values of 32 bits
   write(0x6062, wrapped(demand_.position, parameters_.range_lower, parameters_.range_span));
   write(0x6063, wrapped(position + shift_, kLowest, kAll));
   write(0x6064, wrapped(position, parameters_.range_lower, parameters_.range_span));
@@ -127,7 +127,7 @@ void ServoDrive::write_objects() {
   write(0x606C, increments(actual_velocity()));
   write(0x6074, per_mille);
   write(0x6077, per_mille);
-  write(0x6078, per_mille);  // torque is proportional to current
+  write(0x6078, per_mille);  // current is proportional to torque
   write(0x60F4, increments(demand_.position - position));
   write(0x60FD, digital_inputs());
 }

@@ -68,7 +68,7 @@ void add_state_objects(std::vector<Row>& rows) {
                               {{0x6061, 0}, integer8, kServoRo, true, 0, "modes of operation display"},
                               {{0x6502, 0}, unsigned32, kServoRo, false, supported_modes(), "supported drive modes"},
                               {{0x60FD, 0}, unsigned32, kServoRo, true, 0, "digital inputs"},
-                              // Nothing is connected to the outputs.
+                              // The outputs are not connected.
                               {{0x60FE, 0}, unsigned8, kServoRo, false, 2, "digital outputs"},
                               {{0x60FE, 1}, unsigned32, kServoRw, true, 0, "physical outputs"},
                               {{0x60FE, 2}, unsigned32, kServoRw, true, 0, "bit mask"},
@@ -81,7 +81,7 @@ void add_position_objects(std::vector<Row>& rows, const DriveConfig& config) {
   const double scale = config.increments_per_unit();
   const auto increments = [scale](double units) { return whole<std::int32_t>(units * scale); };
   const auto position = [&](double joint) { return increments(config.sign * (joint - config.offset)); };
-  // A joint that turns without end has no limits unless the cell file gives it some.
+  // A continuous joint has no limits unless the cell file sets them.
   const DriveConfig unlimited;
   const bool turns = !config.stops && config.software_limits.lower <= unlimited.software_limits.lower &&
                      config.software_limits.upper >= unlimited.software_limits.upper;
@@ -276,7 +276,7 @@ std::optional<SdoAbort> check_servo_object(ObjectAddress address, std::int64_t v
     }
     case 0x60F2:
       return among({0, 0x40, 0x80, 0xC0});
-    // Directions are those of the cell file; there is no touch probe.
+    // The cell file sets the directions; there is no touch probe.
     case 0x607E:
     case 0x60B8:
     case 0x6086:
@@ -325,7 +325,7 @@ ServoParameters read_servo_parameters(const ObjectDictionary& objects) {
   out.quick_deceleration = std::min(at_least_one(0x6085), most_deceleration);
   out.lower = number(0x607D, 1);
   out.upper = std::max(out.lower, number(0x607D, 2));
-  // The ends of what 32 bits count limit nothing.
+  // The lowest and the highest value of 32 bits mean no limit.
   constexpr double kLowest = std::numeric_limits<std::int32_t>::min();
   constexpr double kHighest = std::numeric_limits<std::int32_t>::max();
   if (out.lower <= kLowest) out.lower = -std::numeric_limits<double>::infinity();

@@ -29,8 +29,8 @@ struct ServoParameters {
   double fastest = 1;             // 0x607F
   double lower = 0;               // 0x607D
   double upper = 0;
-  double range_lower = 0;            // 0x607B, or all that 32 bits count
-  double range_span = 1;             // increments from the lowest to the highest, both included
+  double range_lower = 0;            // 0x607B; without it, the lowest value of 32 bits
+  double range_span = 1;             // increments in the range, both ends included
   int rotary_option = 0;             // 0x60F2, bits 6 and 7
   double following_window = 0;       // 0x6065; negative: not watched
   double following_time = 0;         // 0x6066
