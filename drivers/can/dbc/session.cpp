@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "drivers/can/dbc/unit.hpp"
@@ -139,6 +140,17 @@ double span_of(const DbcSignal& signal, const DbcSignalConfig& config) {
   return wraps ? std::ldexp(std::abs(signal.factor * config.scale), signal.length) : 0.0;
 }
 
+// The motion between two frames behind a difference of counter values. Takes the shorter way round, since no joint
+// moves by half of the counter's range between two frames. A source may also wrap at one turn, although its signal
+// holds more (0 to 360 degrees in 16 bits): then the way round the counter is long and the way round one turn is short.
+double step_of(double difference, double span) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  const double by_counter = std::remainder(difference, span);
+  const double by_turn = std::remainder(difference, kTurn);
+  const bool wraps_at_turn = std::abs(by_counter) > span / 4 && std::abs(by_turn) < std::abs(by_counter) / 2;
+  return wraps_at_turn ? by_turn : by_counter;
+}
+
 }  // namespace
 
 std::optional<DbcPlan> plan_dbc(const DbcStreamConfig& config, Dbc dbc, Diagnostics& diagnostics) {
@@ -266,8 +278,8 @@ void DbcSession::take(const Source& source, Field& field, const CanFrame& frame,
 
 void DbcSession::take_position(const Source& source, Field& field, double value, Timestamp now) {
   if (field.span > 0) {
-    // Takes the shorter way: no joint moves by half of the counter's range between two frames.
-    if (field.last) value = *field.last + std::remainder(value - *field.last, field.span);
+    const double sent = std::exchange(field.last_sent, value);
+    if (field.last) value = *field.last + step_of(value - sent, field.span);
     field.last = value;
   }
   const std::uint32_t bit = 1U << field.joint;

@@ -111,6 +111,7 @@ class DbcSession {
     // For continuous joints: range of the counter (0: does not wrap) and newest value without wraps, both in rad.
     double span = 0;
     std::optional<double> last = {};
+    double last_sent = 0;  // the newest value as the source sent it; valid if `last` is set
   };
   struct Source {
     const DbcMessage* message = nullptr;

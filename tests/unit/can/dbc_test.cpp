@@ -442,6 +442,31 @@ TEST(DbcTurns, TheCounterOfAContinuousJointContinuesAcrossItsWrap) {
   EXPECT_NEAR(recorder.samples[2].position[0], 0.004, 1e-9) << "a repeated log starts from its own values";
 }
 
+// The source sends 0 to 360 degrees in hundredths; its signal could hold 655.35 degrees.
+TEST(DbcTurns, ASourceThatWrapsAtOneTurnContinuesInBothDirections) {
+  Diagnostics diagnostics;
+  DbcStreamConfig config;
+  config.signals = {mapped("Axis", "Angle", 0)};
+  config.signals[0].turns = true;
+  config.signals[0].scale = std::numbers::pi / 180;
+  SignalRecorder recorder;
+  auto plan = plan_dbc(
+      config, parse_dbc("BO_ 256 Axis: 2 A\n SG_ Angle : 0|16@1+ (0.01,0) [0|360] \"deg\" A\n", "f.dbc", diagnostics),
+      diagnostics);
+  ASSERT_TRUE(plan) << diagnostics.text();
+  DbcSession sut(std::move(*plan), recorder);
+  for (const int direction : {1, -1}) {
+    sut.restart();
+    for (int i = 0; i <= 300; ++i) {
+      const double real_deg = direction * 7.0 * i;
+      const double sent = std::fmod(std::fmod(real_deg, 360.0) + 360.0, 360.0);
+      const auto raw = static_cast<std::uint16_t>(std::lround(100 * sent));
+      sut.receive(frame(256, {static_cast<std::uint8_t>(raw), static_cast<std::uint8_t>(raw >> 8)}), {1 + i});
+      ASSERT_NEAR(recorder.samples.back().position[0], real_deg * std::numbers::pi / 180, 1e-9) << i;
+    }
+  }
+}
+
 TEST_F(DbcSessionTest, EqualLimitsAreNone) {
   sut->receive(extended_frame(2566844416U - 0x80000000U, {0x7F, 0xFF, 0, 0, 0, 0, 0, 0}), {1});
   ASSERT_EQ(recorder.samples.size(), 1U);
