@@ -12,8 +12,8 @@ constexpr double kWithinATurn = kTurn * (1.0 + 1e-6);  // tolerates rounding in 
 }  // namespace
 
 bool TurnUnwrapper::push(const JointSample& sample) noexcept {
-  if ((sample.present & joints_) == 0) return inner_->push(sample);
   if (sample.sequence == JointSample::kBeginsAnew) restart();
+  if ((sample.present & joints_) == 0) return inner_->push(sample);
   JointSample out = sample;
   for (std::size_t i = 0; i < kMaxJointsPerRobot; ++i) {
     const double given = sample.position[i];

@@ -66,6 +66,16 @@ TEST_F(TurnUnwrapperTest, ARestartedSourceIsNotContinued) {
   EXPECT_EQ(pushed(-3.0), -3.0);
 }
 
+TEST_F(TurnUnwrapperTest, ARestartCountsAlsoInASampleWithoutTheJoint) {
+  pushed(3.0);
+  pushed(-3.0);
+  JointSample other;
+  other.sequence = JointSample::kBeginsAnew;
+  other.present = 0b10;
+  EXPECT_TRUE(sut.push(other));
+  EXPECT_EQ(pushed(-3.0), -3.0);
+}
+
 TEST_F(TurnUnwrapperTest, NonFiniteAndAbsentPositionsChangeNothing) {
   static_cast<void>(pushed(3.1));
   EXPECT_TRUE(std::isnan(pushed(std::numeric_limits<double>::quiet_NaN())));
