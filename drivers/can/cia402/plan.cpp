@@ -82,6 +82,10 @@ class Planner {
     if (!node.tpdos.empty()) {
       std::vector<TpdoConfig> tpdos = node.tpdos;
       for (TpdoConfig& tpdo : tpdos) fill_cob_id(tpdo, node, name);
+      if (node.turns && !node.eds_file.empty()) {
+        Diagnostics ignored;  // the cell file has the mapping, so faults of the EDS do not matter
+        if (const auto device = read_eds(node.eds_file, node.node_id, ignored)) take_range(device->objects, node);
+      }
       return tpdos;
     }
     if (!node.eds_file.empty()) {
