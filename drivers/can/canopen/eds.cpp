@@ -167,7 +167,8 @@ class EdsReader {
       return;
     }
     const auto kind = number_of(section, "objecttype");
-    if (kind == kArray || kind == kRecord) return;  // its values stand in its subindices
+    // An object with subindices has its values there. Some files leave out the type of the object.
+    if (kind == kArray || kind == kRecord || number_of(section, "subnumber").value_or(0) > 0) return;
     add_object(address, section);
   }
 
