@@ -144,17 +144,14 @@ void CanopenSlave::reset_objects(ResetKind kind) {
   communication_errors_ = 0;
   emergencies_.clear();
   emergency_sent_ = {};
-  const bool restores = std::exchange(restores_, false);
   if (kind == ResetKind::node) {
-    if (restores) defaults_ = factory_;
+    if (std::exchange(restores_, false)) defaults_ = factory_;
     objects_ = defaults_;
     device_errors_ = 0;
     return;
   }
-  for (auto& [address, entry] : factory_.entries()) {
-    if (!is_communication(address)) continue;
-    if (restores) defaults_.set(address, entry);
-    objects_.set(address, *defaults_.find(address));
+  for (const auto& [address, entry] : defaults_.entries()) {
+    if (is_communication(address)) objects_.set(address, entry);
   }
   objects_.write_integer(kErrorRegister, error_register());
 }
@@ -168,16 +165,16 @@ void CanopenSlave::reset(ResetKind kind, Timestamp now) {
   guard_due_ = {};
   guard_toggle_ = false;
   nmt_ = NmtState::boot_up;
-  if (kind == ResetKind::node) {
-    application_->on_reset(now);
-  } else {
-    static_cast<void>(application_->communication_lost(now));
-  }
+  const bool fails = kind == ResetKind::communication && application_->communication_lost(now);
+  if (kind == ResetKind::node) application_->on_reset(now);
   heartbeat_due_ = {};
-  if (node_ == kNoNodeNumber) return;
-  gate_.send(encode_heartbeat({node_, NmtState::boot_up}));
-  restart_heartbeat(now);
-  enter(first_, now);
+  if (node_ != kNoNodeNumber) {
+    gate_.send(encode_heartbeat({node_, NmtState::boot_up}));
+    restart_heartbeat(now);
+    enter(first_, now);
+  }
+  // After the boot-up message: nothing is sent before it.
+  if (fails) emergency(kEmcyMasterLost, kErrorGeneric | kErrorCommunication);
 }
 
 void CanopenSlave::enter(NmtState state, Timestamp now) {
@@ -190,7 +187,7 @@ void CanopenSlave::enter(NmtState state, Timestamp now) {
   }
   if (state == NmtState::stopped) {
     server_.reset();
-    static_cast<void>(application_->communication_lost(now));
+    if (application_->communication_lost(now)) emergency(kEmcyMasterLost, kErrorGeneric | kErrorCommunication);
   }
 }
 
@@ -367,8 +364,13 @@ void CanopenSlave::after_write(std::span<const ObjectAddress> addresses, Timesta
   const auto has = [&](std::uint16_t index) {
     return std::ranges::any_of(addresses, [index](ObjectAddress address) { return address.index == index; });
   };
-  const bool has_parameter = std::ranges::any_of(addresses, SlavePdos::is_parameter);
-  if (has_parameter) pdos_.load(now);
+  bool has_parameter = false;
+  for (const ObjectAddress& address : addresses) {
+    if (!SlavePdos::is_parameter(address)) continue;
+    pdos_.load_pdo_of(address, now);
+    has_parameter = true;
+  }
+  if (has_parameter && !pdos_.is_late()) clear_error(rpdo_late);
   if (has_parameter || has(kHeartbeatConsumer.index)) ++identifiers_revision_;
   if (has(kHeartbeatProducer)) {
     restart_heartbeat(now);

@@ -146,7 +146,7 @@ class CanopenSlave final : private SdoObjects {
   NmtState nmt_ = NmtState::boot_up;
   NmtState first_ = NmtState::pre_operational;
   bool guard_toggle_ = false;
-  bool restores_ = false;  // the next reset restores the values of factory_
+  bool restores_ = false;  // the next NMT reset node restores the values of factory_
   std::uint8_t communication_errors_ = 0;
   std::uint8_t device_errors_ = 0;    // error register of the application
   std::deque<CanFrame> emergencies_;  // waiting for the inhibit time (0x1015)

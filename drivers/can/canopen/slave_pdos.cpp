@@ -170,32 +170,51 @@ std::vector<PdoEntryConfig> SlavePdos::mapping_of(std::uint16_t index) const {
 
 void SlavePdos::load(Timestamp now) {
   for (std::uint16_t i = 0; i < kSlavePdos; ++i) {
-    const auto tpdo_index = static_cast<std::uint16_t>(kTpdoParameters + i);
-    Tpdo& tpdo = tpdos_[i];
-    tpdo.cob_id = number(tpdo_index, 1) & 0x7FFU;
-    tpdo.on_request = (number(tpdo_index, 1) & kCobIdNoRtr) == 0;
-    tpdo.transmission_type = static_cast<std::uint8_t>(number(tpdo_index, 2));
-    tpdo.inhibit = std::chrono::microseconds(100) * number(tpdo_index, 3);
-    tpdo.event_timer = std::chrono::milliseconds(number(tpdo_index, 5));
-    tpdo.sync_start = static_cast<std::uint8_t>(number(tpdo_index, 6));
-    tpdo.counting = tpdo.sync_start == 0;
-    tpdo.entries = mapping_of(static_cast<std::uint16_t>(kTpdoMapping + i));
-    tpdo.valid = (number(tpdo_index, 1) & kCobIdInvalid) == 0 && is_valid_mapping(tpdo.entries);
-    tpdo.last.clear();
-    tpdo.event_due = {};
-    if (tpdo.event_timer.count() > 0 && now.known()) tpdo.event_due = now + tpdo.event_timer;
-
-    const auto rpdo_index = static_cast<std::uint16_t>(kRpdoParameters + i);
-    Rpdo& rpdo = rpdos_[i];
-    rpdo.cob_id = number(rpdo_index, 1) & 0x7FFU;
-    rpdo.on_sync = number(rpdo_index, 2) <= kHighestSync;
-    rpdo.entries = mapping_of(static_cast<std::uint16_t>(kRpdoMapping + i));
-    rpdo.valid = (number(rpdo_index, 1) & kCobIdInvalid) == 0 && is_valid_mapping(rpdo.entries);
-    rpdo.waiting.reset();
-    rpdo.event_timer = std::chrono::milliseconds(number(rpdo_index, 5));
-    rpdo.due = {};
-    rpdo.late = false;
+    load_tpdo(i, now);
+    load_rpdo(i);
   }
+}
+
+void SlavePdos::load_pdo_of(ObjectAddress parameter, Timestamp now) {
+  const bool sent = parameter.index >= kTpdoParameters;
+  const std::uint16_t first = sent ? kTpdoParameters : kRpdoParameters;
+  const auto i = static_cast<std::uint16_t>((parameter.index - first) % (kRpdoMapping - kRpdoParameters));
+  if (i >= kSlavePdos) return;
+  if (sent) {
+    load_tpdo(i, now);
+  } else {
+    load_rpdo(i);
+  }
+}
+
+void SlavePdos::load_tpdo(std::uint16_t i, Timestamp now) {
+  const auto parameters = static_cast<std::uint16_t>(kTpdoParameters + i);
+  Tpdo& tpdo = tpdos_[i];
+  tpdo.cob_id = number(parameters, 1) & 0x7FFU;
+  tpdo.on_request = (number(parameters, 1) & kCobIdNoRtr) == 0;
+  tpdo.transmission_type = static_cast<std::uint8_t>(number(parameters, 2));
+  tpdo.inhibit = std::chrono::microseconds(100) * number(parameters, 3);
+  tpdo.event_timer = std::chrono::milliseconds(number(parameters, 5));
+  tpdo.sync_start = static_cast<std::uint8_t>(number(parameters, 6));
+  tpdo.counting = tpdo.sync_start == 0;
+  tpdo.entries = mapping_of(static_cast<std::uint16_t>(kTpdoMapping + i));
+  tpdo.valid = (number(parameters, 1) & kCobIdInvalid) == 0 && is_valid_mapping(tpdo.entries);
+  tpdo.last.clear();
+  tpdo.event_due = {};
+  if (tpdo.event_timer.count() > 0 && now.known()) tpdo.event_due = now + tpdo.event_timer;
+}
+
+void SlavePdos::load_rpdo(std::uint16_t i) {
+  const auto parameters = static_cast<std::uint16_t>(kRpdoParameters + i);
+  Rpdo& rpdo = rpdos_[i];
+  rpdo.cob_id = number(parameters, 1) & 0x7FFU;
+  rpdo.on_sync = number(parameters, 2) <= kHighestSync;
+  rpdo.entries = mapping_of(static_cast<std::uint16_t>(kRpdoMapping + i));
+  rpdo.valid = (number(parameters, 1) & kCobIdInvalid) == 0 && is_valid_mapping(rpdo.entries);
+  rpdo.waiting.reset();
+  rpdo.event_timer = std::chrono::milliseconds(number(parameters, 5));
+  rpdo.due = {};
+  rpdo.late = false;
 }
 
 void SlavePdos::start(Timestamp now) {

@@ -45,14 +45,16 @@ class SlavePdos {
   }
   // Why a write of a PDO parameter, which fits its type, is refused (CiA 301, 7.5.2.35 to 7.5.2.38).
   [[nodiscard]] std::optional<SdoAbort> check(ObjectAddress address, std::uint64_t value) const;
-  // Takes the parameters from the dictionary.
+  // Takes the parameters of all PDOs from the dictionary; their timers begin again.
   void load(Timestamp now);
+  // The same for the PDO that has this parameter; the others go on.
+  void load_pdo_of(ObjectAddress parameter, Timestamp now);
   // NMT operational begins: event-driven TPDOs are sent once.
   void start(Timestamp now);
   void stop();  // NMT operational ends: RPDOs are no longer watched
 
   // Appends the identifiers of the valid RPDOs, and of the TPDOs that allow RTR, to `identifiers`. They change with
-  // load() only.
+  // load() and load_pdo_of() only.
   void list_identifiers(std::vector<std::uint32_t>& identifiers) const;
   // An RPDO's values go into the dictionary now, or with the next SYNC; `written` gets the objects.
   [[nodiscard]] Received receive(const CanFrame& frame, std::vector<ObjectAddress>& written, Timestamp now);
@@ -105,6 +107,8 @@ class SlavePdos {
   [[nodiscard]] std::optional<SdoAbort> check_mapping(ObjectAddress address, std::uint64_t value) const;
   [[nodiscard]] std::optional<SdoAbort> check_mapping_count(ObjectAddress address, std::uint64_t value) const;
   [[nodiscard]] std::optional<SdoAbort> check_mapped_object(bool received, std::uint32_t word) const;
+  void load_tpdo(std::uint16_t i, Timestamp now);
+  void load_rpdo(std::uint16_t i);
   void apply(const Rpdo& rpdo, const CanFrame& frame, std::vector<ObjectAddress>& written);
   [[nodiscard]] bool has_event(const Tpdo& tpdo, std::span<const std::uint64_t> values) const;
   [[nodiscard]] bool event_differs(const Tpdo& tpdo, std::span<const std::uint64_t> values) const;

@@ -95,6 +95,9 @@ TEST_F(TurningRange, ThePositioningOptionSelectsTheDirectionToATarget) {
   EXPECT_NEAR(way_to(1500), -5, 0.01) << "in negative direction only";
   EXPECT_EQ(master.write(0x60F2, 0, 0x80, 2), 0U);
   EXPECT_NEAR(way_to(1000), 5.5, 0.01) << "in positive direction only";
+  EXPECT_NEAR(way_to(1000), 0, 0.01) << "it stands there already";
+  EXPECT_NEAR(way_to(2333), 1.333, 0.01);
+  EXPECT_NEAR(way_to(2333), 0, 0.01);
   EXPECT_EQ(master.write(0x60F2, 0, 0x01, 2), 0x0609'0030U);
 }
 

@@ -218,6 +218,41 @@ TEST_F(Slave, ReportsALateRpdo) {
   EXPECT_TRUE(master.emergencies().empty()) << "only operational nodes receive RPDOs";
 }
 
+TEST_F(Slave, APdoThatIsChangedLeavesTheOthersAsTheyAre) {
+  EXPECT_EQ(write(0x1400, 5, 50, 2), 0U);
+  master.receive(frame(0x000, {0x01, 0x05}));
+  master.receive(frame(0x205, {0x06, 0x00}));
+  master.take();
+  master.run(30ms);
+  EXPECT_EQ(write(0x1801, 3, 100, 2), 0U);
+  master.run(30ms);
+  EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8250})) << "its timer went on";
+  EXPECT_EQ(write(0x1402, 5, 500, 2), 0U);
+  EXPECT_EQ(master.object(0x1001), 0x11) << "it is still late";
+  EXPECT_EQ(write(0x1400, 5, 0, 2), 0U);
+  EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x0000})) << "it is watched no more";
+  EXPECT_EQ(master.object(0x1001), 0);
+}
+
+TEST_F(Slave, AFaultByAStopOrAResetOfCommunicationIsReported) {
+  EXPECT_EQ(write(0x6007, 0, 1, 2), 0U) << "lost communication is a fault";
+  master.enable();
+  master.receive(frame(0x000, {0x02, 0x05}));
+  master.run(5ms);  // the drive stops
+  EXPECT_EQ(master.drive.state(), Cia402State::fault);
+  EXPECT_TRUE(master.emergencies().empty()) << "a stopped node sends none";
+  master.receive(frame(0x000, {0x80, 0x05}));
+  EXPECT_EQ(master.object(0x1001), 0x11);
+  EXPECT_EQ(master.object(0x1003, 1) & 0xFFFF, 0x8130);
+  master.control(0x80);
+  EXPECT_EQ(master.object(0x1001), 0);
+  master.enable();
+  master.take();
+  master.receive(frame(0x000, {0x82, 0x05}));
+  EXPECT_EQ(master.emergencies(), (std::vector<std::uint16_t>{0x8130}));
+  EXPECT_EQ(master.object(0x1001), 0x11);
+}
+
 TEST_F(Slave, ResetCommunicationKeepsTheParametersOfTheDrive) {
   EXPECT_EQ(write(0x6081, 0, 1234, 4), 0U);
   EXPECT_EQ(write(0x6060, 0, 1, 1), 0U);
@@ -251,6 +286,8 @@ TEST_F(Slave, StoresParametersOnCommandUntilTheyAreRestored) {
   EXPECT_EQ(write(0x1011, 1, kSaveWord, 4), 0x0800'0020U);
   EXPECT_EQ(write(0x1011, 1, kLoadWord, 4), 0U);
   EXPECT_EQ(master.object(0x6081), 1234) << "in force after a reset";
+  master.receive(frame(0x000, {0x82, 0x05}));
+  EXPECT_EQ(master.object(0x1017), 100) << "of the node, not of its communication";
   master.receive(frame(0x000, {0x81, 0x05}));
   EXPECT_EQ(master.object(0x6081), usual);
   EXPECT_EQ(master.object(0x1017), 0);

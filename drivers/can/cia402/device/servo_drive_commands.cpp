@@ -173,13 +173,15 @@ double ServoDrive::target_of(double wanted, bool nearest) const {
   constexpr int kNegative = 1;
   constexpr int kPositive = 2;
   constexpr int kShortest = 3;
+  // A target where the drive already stands is not a turn away, however its position was rounded.
+  constexpr double kSame = 0.5;  // increments
   const double span = parameters_.range_span;
   const double at = demand_.position;
   double target = wanted + span * std::floor((at - parameters_.range_lower) / span);
   const int option = nearest ? kShortest : parameters_.rotary_option;
   if (option == kShortest) target += span * std::round((at - target) / span);
-  if (option == kPositive && target < at) target += span;
-  if (option == kNegative && target > at) target -= span;
+  if (option == kPositive && target < at - kSame) target += span;
+  if (option == kNegative && target > at + kSame) target -= span;
   return target;
 }
 
