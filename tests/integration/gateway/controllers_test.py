@@ -201,16 +201,16 @@ class Controllers(unittest.TestCase):
 
     @each_client
     def test_a_goal_goes_on_while_the_process_of_dds_is_replaced(self, client, goals):
-        self.assertTrue(self.goal(client, goals + 41, (0.5, 0.1), (6, 0.3)))
+        self.assertTrue(self.goal(client, goals + 45, (0.5, 0.1), (6, 0.3)))
         before = len(client.lines("result"))
-        client.write(f"result {goals + 41}")  # waits in the gateway
+        client.write(f"result {goals + 45}")  # waits in the gateway
         process = next(one for one in self.scratch.status()["processes"] if f"domain {DOMAIN} " in one["subject"])
         os.kill(process["pid"], signal.SIGKILL)
         result = client.next_line("result", before)
         self.assertEqual((result["result"], result["error_code"]), (SUCCEEDED, 0))
         self.assertTrue(g.eventually(lambda: abs(self.position() - 0.3) < 1e-9, PATIENCE_S))
-        self.assertTrue(self.goal(client, goals + 42, (0.3, 0.2)), "the new process takes goals")
-        self.assertEqual(self.result(client, goals + 42)["result"], SUCCEEDED)
+        self.assertTrue(self.goal(client, goals + 46, (0.3, 0.2)), "the new process takes goals")
+        self.assertEqual(self.result(client, goals + 46)["result"], SUCCEEDED)
 
     @each_client
     def test_goals_that_are_wrong_tell_why(self, client, goals):
