@@ -15,7 +15,7 @@ import gateway as g
 sys.path.insert(0, str(g.SOURCE / "tests" / "integration" / "package"))
 
 UNIT = g.SOURCE / "config" / "systemd" / "cellmirror@.service"
-PROGRAMS = ("cellmirror", "cellmirror-mesh-reader", "cellmirror-volume-reader")
+PROGRAMS = ("cellmirror", "cellmirror-dds", "cellmirror-mesh-reader", "cellmirror-mqtt", "cellmirror-volume-reader")
 LATE = "203.0.113.77"  # for documents (RFC 5737): no machine has it
 # Five exits must fit into ten seconds; the unit's own pause alone would keep them apart. Where this machine lets nobody raise
 # limits, the loop runs without real time.
