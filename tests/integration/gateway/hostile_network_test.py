@@ -21,6 +21,10 @@ ANNOUNCEMENTS = 300
 WATCHED_S = 3  # a window in which periods are counted
 # Of the periods of a window. A busy machine misses some in any window, and not the same number in each.
 MISSED_MORE = 0.03
+# In a row, at 1 kHz. After a machine has stood still for 0.1 s the hand may stand where its contact chatters: then forces of less
+# than NO_FORCE_N come one by one. Where a force is taken away, none of them comes for longer than this.
+PAUSE_ROWS = 20
+NO_FORCE_N = 0.05
 FRESH_LOOKS = 0.8  # of the looks at the CAN robot: its simulator is held up by a busy machine, too
 
 
@@ -53,14 +57,14 @@ class HostileNetwork(unittest.TestCase):
             attacker.result()
         missed = cls.cell.scratch.status()["loop"]["missed"] - before
         watcher.finish()
-        forces = [row["force_n"] for row in t.rows(log)]
-        return {"missed": missed, "without force": sum(force < 0.05 for force in forces), "rows": len(forces), "can": can_states}
+        rows = t.rows(log)
+        return {"missed": missed, "without force": longest_pause(rows), "rows": len(rows), "can": can_states}
 
     def compared(self, attack):
         """The attack against a window without one."""
         seen = self.watch(attack)
         self.assertGreater(seen["rows"], 100 * WATCHED_S)
-        self.assertEqual(seen["without force"], 0, (self.control, seen))
+        self.assertLess(seen["without force"], PAUSE_ROWS, (self.control, seen))
         self.assertNotIn("lost", seen["can"])
         self.assertGreaterEqual(seen["can"].count("fresh"), FRESH_LOOKS * len(seen["can"]), (self.control, seen))
         self.assertLessEqual(seen["missed"], self.control["missed"] + MISSED_MORE * 1000 * WATCHED_S, (self.control, seen))
@@ -152,6 +156,15 @@ class HostileNetwork(unittest.TestCase):
                 self.cell.broker.drop()
                 self.assertTrue(g.eventually(lambda: not any(
                     problem["kind"] == "mqtt" for problem in self.cell.scratch.status()["problems"])))
+
+
+def longest_pause(rows):
+    """The largest number of rows in a row without a force."""
+    longest = now = 0
+    for row in rows:
+        now = now + 1 if row["force_n"] < NO_FORCE_N else 0
+        longest = max(longest, now)
+    return longest
 
 
 def resident_mb(pid):
