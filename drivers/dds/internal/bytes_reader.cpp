@@ -20,6 +20,7 @@ Result<std::unique_ptr<BytesReader>> BytesReader::make(const std::shared_ptr<Par
   std::unique_ptr<BytesReader> made(new BytesReader(participant));
   made->receive_ = std::move(receive);
   made->gone_ = std::move(gone);
+  made->wants_history_ = config.transient_local;
   const auto id = participant->add_reader(config, *made);
   if (!id) return std::unexpected(id.error());
   made->id_ = *id;
@@ -31,6 +32,8 @@ BytesReader::~BytesReader() {
 }
 
 void BytesReader::sample(const SampleReceived& sample, std::span<const std::byte> payload) {
+  const Timestamp now = clock_.now();
+  if (!wants_history_ && repeated_.is_repeated({sample.writer, sample.number}, now)) return;
   samples_.fetch_add(1, std::memory_order_relaxed);
   ReceivedSample out;
   out.payload = payload;
@@ -38,7 +41,7 @@ void BytesReader::sample(const SampleReceived& sample, std::span<const std::byte
   out.start = std::as_bytes(std::span(sample.start));
   out.name = {sample.writer, sample.number};
   out.related_guid = sample.related;
-  out.age = std::clamp(clock_.now() - Timestamp{sample.taken_ns}, Nanoseconds(0), kMostAge);
+  out.age = std::clamp(now - Timestamp{sample.taken_ns}, Nanoseconds(0), kMostAge);
   receive_(out);
 }
 
@@ -48,11 +51,13 @@ void BytesReader::matched(const PeerMatched& event) {
     if (writers_.size() < kMostWriters) writers_.insert(event.peer);
     return;
   }
+  repeated_.forget(event.peer);
   if (writers_.erase(event.peer) > 0 && gone_) gone_(event.peer);
 }
 
 void BytesReader::lost() {
   matched_.store(0, std::memory_order_relaxed);
+  repeated_.restart(clock_.now());
   for (const Guid& writer : std::exchange(writers_, {})) {
     if (gone_) gone_(writer);
   }

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "drivers/dds/internal/participant.hpp"
+#include "drivers/dds/internal/repeated_samples.hpp"
 #include "drivers/dds/sample_name.hpp"
 #include "rt_core/base/result.hpp"
 #include "rt_core/base/time.hpp"
@@ -28,7 +29,8 @@ struct ReceivedSample {
 
 class BytesReader final : private EndpointEvents {
  public:
-  // The link's thread calls it, one call at a time, and not after the reader is destroyed.
+  // The link's thread calls it, one call at a time, and not after the reader is destroyed. No sample comes twice, even
+  // if the process of the DDS library is replaced, but for those that a reader of transient-local samples asks for.
   using Receive = std::function<void(const ReceivedSample& sample)>;
   // A matched writer was closed, its lease has expired, or the process of the DDS library has ended. Called like
   // Receive.
@@ -59,7 +61,9 @@ class BytesReader final : private EndpointEvents {
   SystemClock clock_;
   Receive receive_;
   Gone gone_;
-  std::set<Guid> writers_;  // matched; the link's thread
+  bool wants_history_ = false;
+  std::set<Guid> writers_;    // matched; the link's thread
+  RepeatedSamples repeated_;  // the link's thread
   std::atomic<int> matched_{0};
   std::atomic<std::uint64_t> samples_{0};
   std::atomic<std::uint64_t> incompatible_{0};

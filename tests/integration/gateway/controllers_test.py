@@ -5,6 +5,7 @@ import json
 import os
 import signal
 import struct
+import time
 import unittest
 
 import gateway as g
@@ -211,6 +212,19 @@ class Controllers(unittest.TestCase):
         self.assertTrue(g.eventually(lambda: abs(self.position() - 0.3) < 1e-9, PATIENCE_S))
         self.assertTrue(self.goal(client, goals + 46, (0.3, 0.2)), "the new process takes goals")
         self.assertEqual(self.result(client, goals + 46)["result"], SUCCEEDED)
+
+    def test_a_trajectory_is_not_executed_again_by_the_next_process_of_dds(self):
+        # Cyclone DDS gives a new reader what the one that was killed had not acknowledged.
+        for round_ in range(3):
+            self.command((0.3, 0.05 * (round_ + 1)))
+            self.assertEqual(self.settled(), "arrived")
+            taken = self.status()["taken"]
+            process = next(one for one in self.scratch.status()["processes"] if f"domain {DOMAIN} " in one["subject"])
+            os.kill(process["pid"], signal.SIGKILL)
+            self.assertTrue(g.eventually(lambda: self.status()["publishers"] == 0, PATIENCE_S))
+            self.assertTrue(g.eventually(lambda: self.status()["publishers"] == 1, PATIENCE_S))
+            time.sleep(1)
+            self.assertEqual(self.status()["taken"], taken)
 
     @each_client
     def test_goals_that_are_wrong_tell_why(self, client, goals):
