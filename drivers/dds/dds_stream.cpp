@@ -87,7 +87,19 @@ class DdsStream final : public JointStream {
                          text(feed.other_publisher), text(feed.publisher));
     }
     if (silence > config_.ages.lost_after) return fmt::format("{}, silent for {:.1f} s", publishers, seconds(silence));
-    return publishers;
+    return publishers + implausible_stamps(feed);
+  }
+
+  // The age of a value counts from its arrival, so a slow network shows in the stamps alone.
+  [[nodiscard]] std::string implausible_stamps(const FeedReport& feed) const {
+    const Nanoseconds most = config_.ages.stale_after;
+    const Nanoseconds age = feed.stamp_age.value_or(Nanoseconds(0));
+    if (age > most)
+      return fmt::format(", whose time stamps are {:.2f} s old on arrival: messages are late, or the clocks differ",
+                         seconds(age));
+    if (age < -most)
+      return fmt::format(", whose time stamps are {:.2f} s in the future: the clocks differ", seconds(-age));
+    return {};
   }
 
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> details(const FeedCounters& counters) const {

@@ -212,6 +212,8 @@ void JointStateRouter::touch(RobotFeed& feed, Timestamp receive_time) {
   touched_.push_back(&feed);
   const auto wall_ns = wall_clock_ns(view_.stamp);
   if (!wall_ns && view_.stamp != RosTime{}) ++feed.counters_.bad_stamps;
+  feed.newest_.stamp_age.reset();
+  if (wall_ns) feed.newest_.stamp_age = Nanoseconds(to_wall_clock_ns(receive_time) - *wall_ns);
   feed.begin(receive_time, wall_ns ? from_wall_clock_ns(*wall_ns) : Timestamp{});
 }
 

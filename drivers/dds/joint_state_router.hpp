@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -52,6 +53,9 @@ struct FeedReport {
   std::size_t conflict_joint = 0;
   WriterGuid publisher = {};
   WriterGuid other_publisher = {};
+  // How old the time stamp of the newest message was when it arrived: negative where it lies in the future. None: it
+  // has no stamp.
+  std::optional<Nanoseconds> stamp_age = {};
 };
 
 // One robot's share of a topic. Counters outlive closing and opening again.

@@ -17,7 +17,7 @@ class RepeatedSamples {
  public:
   static constexpr std::size_t kMostWriters = 4096;
   // Longer than a writer keeps samples for a reader whose lease it waits for (10 s in Cyclone DDS, 20 s in Fast DDS).
-  // Afterwards no number is refused, so that a number that somebody has made up does not refuse a writer for ever.
+  // Afterwards no number is refused, so that a made-up number does not refuse a writer for ever.
   static constexpr Nanoseconds kWatched{30'000'000'000};
 
   // Returns true if the reader had this sample, or a later one of the same writer, before the newest restart().

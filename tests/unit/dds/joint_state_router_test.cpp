@@ -206,6 +206,23 @@ TEST_F(JointStateRouterTest, MovesStampsToOurClock) {
   EXPECT_EQ(arm_.feed->counters().bad_stamps, 1U);
 }
 
+TEST_F(JointStateRouterTest, ReportsHowOldStampsAreOnArrival) {
+  sut_.add(*arm_.feed, arm_.sink);
+  const auto age_of = [&](RosTime stamp) {
+    accept({.header = {.stamp = stamp}, .name = {"elbow"}, .position = {1.0}});
+    return arm_.feed->report().stamp_age;
+  };
+  EXPECT_EQ(age_of({}), std::nullopt) << "it has none";
+  EXPECT_EQ(age_of({7, 1'000'000'000}), std::nullopt) << "it is no time";
+  constexpr double kTolerance_s = 2e-3;  // accept() moves the time of arrival on
+  for (const double age_s : {0.5, -0.5}) {
+    const auto stamp = ros_time(to_wall_clock_ns(now_) - static_cast<std::int64_t>(age_s * 1e9));
+    EXPECT_NEAR(seconds(*age_of(stamp)), age_s, kTolerance_s);
+  }
+  EXPECT_GT(seconds(*age_of({1, 0})), 1e9) << "1970";
+  EXPECT_EQ(age_of({}), std::nullopt) << "as of the newest message";
+}
+
 TEST_F(JointStateRouterTest, CountsWhatIsMissingInAPublishersSequence) {
   sut_.add(*arm_.feed, arm_.sink);
   const JointState message{.name = {"elbow"}, .position = {1.0}};

@@ -36,7 +36,7 @@ TEST(RepeatedSamples, AfterARestartOnlyWhatIsLaterIsNew) {
 TEST(RepeatedSamples, AWriterThatClosedIsForgottenAndNumbersAreWatchedForATime) {
   RepeatedSamples repeated;
   EXPECT_FALSE(repeated.is_repeated(sample(1, 5), kStart));
-  EXPECT_FALSE(repeated.is_repeated(sample(2, 1'000'000'000'000), kStart)) << "made up by somebody";
+  EXPECT_FALSE(repeated.is_repeated(sample(2, 1'000'000'000'000), kStart)) << "a made-up number";
   repeated.forget(sample(1, 5).guid);
   repeated.restart(kStart);
   EXPECT_FALSE(repeated.is_repeated(sample(1, 5), kStart + kSecond));
