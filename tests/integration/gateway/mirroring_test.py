@@ -52,6 +52,22 @@ class Mirroring(unittest.TestCase):
         return g.eventually(
             lambda: any(abs(a - j["position"]) > 0.01 for a, j in zip(first, self.scratch.robot(robot)["joints"])))
 
+    def test_a_program_waits_for_streams_by_exit_status(self):
+        def waits(*more):
+            return self.scratch.cellmirror("status", "--wait", "fresh", *more)
+        self.dds()
+        done = waits("--timeout", "0.3")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
+        self.assertIn("not fresh after 0.3 s: no robot is online", done.stderr)
+        self.online(DDS_ROBOT)
+        done = waits("--robot", DDS_ROBOT)
+        self.assertEqual((done.returncode, done.stdout), (0, f"fresh: {DDS_ROBOT}\n"), done.stderr)
+        self.online(CAN_ROBOT)  # nobody sends
+        done = waits("--timeout", "0.3")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(f"{CAN_ROBOT} is ", done.stderr)
+        self.assertNotIn(DDS_ROBOT, done.stderr)
+
     def test_robots_of_both_buses_are_mirrored_at_once(self):
         self.can()
         self.dds()
