@@ -50,7 +50,9 @@ class Prometheus(g.Process):
         return float(answer["result"][0]["value"][1]) if answer and answer["result"] else None
 
 
-class Scraped(unittest.TestCase):
+class Watched(unittest.TestCase):
+    """A gateway and its Prometheus."""
+
     @classmethod
     def setUpClass(cls):
         g.require("prometheus", "prometheus is missing")
@@ -59,13 +61,15 @@ class Scraped(unittest.TestCase):
         cls.addClassCleanup(cls.folder.cleanup)
         cls.scratch = g.Scratch()
         cls.addClassCleanup(cls.scratch.remove)
-        gateway = g.Gateway(cls.scratch, page=True)
-        cls.addClassCleanup(gateway.close)
+        cls.gateway = g.Gateway(cls.scratch, page=True)
+        cls.addClassCleanup(cls.gateway.close)
         cls.page = Page(json.loads(cls.scratch.cellmirror("page", "--json", "--instance", cls.scratch.instance).stdout))
         cls.scratch.send("SET_USSPAR active USS_6 1")
         cls.prometheus = Prometheus(pathlib.Path(cls.folder.name), cls.page.port)
         cls.addClassCleanup(cls.prometheus.close)
 
+
+class Scraped(Watched):
     def promtool(self, *arguments, text=None):
         done = subprocess.run(["promtool", *arguments], input=text, capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
@@ -96,6 +100,17 @@ class Scraped(unittest.TestCase):
             query = expression.replace("$job", "cellmirror").replace("$instance", ".*")
             answer = g.eventually(lambda query=query: self.prometheus.ask("query", query=query))
             self.assertEqual(answer["resultType"], "vector", expression)
+
+
+class Gone(Watched):
+    def test_the_death_of_a_gateway_is_shown_and_alarmed(self):
+        panel = next(panel for panel in DASHBOARD["panels"] if panel["title"] == "Gateways")
+        shown = panel["targets"][0]["expr"].replace("$job", "cellmirror").replace("$instance", ".*")
+        self.assertTrue(g.eventually(lambda: self.prometheus.value(shown) == 1), self.prometheus.output())
+        self.gateway.child.kill()
+        self.assertTrue(g.eventually(lambda: self.prometheus.value(shown) == 0), "the panel says so")
+        alarm = 'ALERTS{alertname="CellmirrorGatewayGone",alertstate="firing"}'
+        self.assertTrue(g.eventually(lambda: self.prometheus.value(alarm) == 1, timeout=30))
 
 
 if __name__ == "__main__":
