@@ -233,23 +233,37 @@ void WallCells::gone(std::string_view sender) {
   ++tile->version;
 }
 
-// Of several gateways that are one cell those that are there count; where none is, the one that was heard last.
-void WallCells::settle_claims(std::vector<std::uint64_t>& numbers) {
-  const auto live = std::ranges::count_if(numbers, [this](std::uint64_t number) { return tiles_.at(number).live; });
-  if (numbers.size() > 1) {
-    const auto last = *std::ranges::max_element(numbers, {}, [this](std::uint64_t number) {
-      const WallTile& tile = tiles_.at(number);
-      return std::pair(tile.live, tile.last_heard_wall_ns);
-    });
-    std::vector<std::uint64_t> over;
-    std::ranges::copy_if(numbers, std::back_inserter(over),
-                         [&](std::uint64_t number) { return number != last && !tiles_.at(number).live; });
-    for (const std::uint64_t number : over) {
-      std::erase_if(senders_, [number](const auto& entry) { return entry.second.tile == number; });
-      std::erase(numbers, number);
-      tiles_.erase(number);
-    }
+// A dead gateway stays on the wall although another one has the name of its cell: nobody may miss its death.
+bool WallCells::is_superseded(const WallTile& dead, const std::vector<std::uint64_t>& numbers) const {
+  return std::ranges::any_of(numbers, [&](std::uint64_t number) {
+    const WallTile& other = tiles_.at(number);
+    if (!other.live) return false;
+    const bool is_same = other.host == dead.host && other.instance == dead.instance;
+    // The list names one gateway: the dead one never was that cell.
+    const bool was_wrong = dead.expected != nullptr && is_expected_gateway(*dead.expected, other) &&
+                           !is_expected_gateway(*dead.expected, dead);
+    return is_same || was_wrong;
+  });
+}
+
+void WallCells::forget_claims(std::vector<std::uint64_t>& numbers) {
+  std::vector<std::uint64_t> dead;
+  for (const std::uint64_t number : numbers) {
+    if (!tiles_.at(number).live) dead.push_back(number);
   }
+  std::ranges::sort(dead, {}, [this](std::uint64_t number) { return tiles_.at(number).last_heard_wall_ns; });
+  const std::size_t too_many = dead.size() - std::min(dead.size(), kMostDeadClaims);
+  for (std::size_t i = 0; i < dead.size(); ++i) {
+    if (i >= too_many && !is_superseded(tiles_.at(dead[i]), numbers)) continue;
+    std::erase_if(senders_, [&](const auto& entry) { return entry.second.tile == dead[i]; });
+    std::erase(numbers, dead[i]);
+    tiles_.erase(dead[i]);
+  }
+}
+
+void WallCells::settle_claims(std::vector<std::uint64_t>& numbers) {
+  if (numbers.size() > 1) forget_claims(numbers);
+  const auto live = std::ranges::count_if(numbers, [this](std::uint64_t number) { return tiles_.at(number).live; });
   for (const std::uint64_t number : numbers) {
     WallTile& tile = tiles_.at(number);
     if (tile.conflict == (live > 1)) continue;

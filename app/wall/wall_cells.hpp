@@ -100,6 +100,8 @@ struct RememberedCell {
 
 class WallCells {
  public:
+  static constexpr std::size_t kMostDeadClaims = 4;  // silent gateways of one cell name that are kept
+
   explicit WallCells(WallSettings settings);
   WallCells(const WallCells&) = delete;
   WallCells& operator=(const WallCells&) = delete;
@@ -139,6 +141,9 @@ class WallCells {
   Sender* sender_of(const std::string& name);
   void erase(std::uint64_t number);
   void update(WallTile& tile, const WallMessage& message, std::int64_t wall_ns);
+  // Several gateways may say that they are one cell; `numbers` are their tiles.
+  [[nodiscard]] bool is_superseded(const WallTile& dead, const std::vector<std::uint64_t>& numbers) const;
+  void forget_claims(std::vector<std::uint64_t>& numbers);
   void settle_claims(std::vector<std::uint64_t>& numbers);
 
   const WallSettings settings_;

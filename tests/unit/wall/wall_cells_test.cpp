@@ -113,8 +113,54 @@ TEST(WallCells, TwoGatewaysWithOneNameAreBothShownWhileBothAreThere) {
     tell(sut, two, i);
     sut.look(at(i + 0.1));
   }
-  ASSERT_EQ(sut.tiles().size(), 1u) << "one is left";
-  EXPECT_FALSE(marked(tile_of(sut, "A"), WallMark::conflict));
+  ASSERT_EQ(sut.tiles().size(), 2u) << "the death of one is shown";
+  EXPECT_EQ(state_word(*tile_of(sut, "A", "s1")), "silent");
+  EXPECT_EQ(level_of(*tile_of(sut, "A", "s1")), CellHealth::fault);
+  EXPECT_EQ(state_word(*tile_of(sut, "A", "s2")), "ok");
+  EXPECT_FALSE(marked(tile_of(sut, "A", "s2"), WallMark::conflict));
+  sut.look(at(100'000));
+  ASSERT_EQ(sut.tiles().size(), 2u) << "both are dead";
+  TestGateway again{"s3", "A", "host-1"};
+  again.run = "2";
+  tell(sut, again, 100'001);
+  sut.look(at(100'001.1));
+  ASSERT_EQ(sut.tiles().size(), 2u);
+  EXPECT_EQ(state_word(*tile_of(sut, "A", "s3")), "ok") << "it is back in its tile";
+  EXPECT_EQ(state_word(*tile_of(sut, "A", "s2")), "silent");
+}
+
+TEST(WallCells, TheListedGatewayIsMissedEvenIfAnotherHasItsName) {
+  WallCells sut(expecting({{.name = "A", .host = "right"}}));
+  TestGateway own{"s1", "A", "right"};
+  TestGateway other{"s2", "A", "wrong"};
+  tell(sut, own, 0);
+  tell(sut, other, 0);
+  for (int i = 1; i < 10; ++i) {
+    tell(sut, other, i);
+    sut.look(at(i + 0.1));
+  }
+  ASSERT_EQ(sut.tiles().size(), 2u);
+  EXPECT_EQ(state_word(*tile_of(sut, "A", "s1")), "silent");
+  EXPECT_TRUE(marked(tile_of(sut, "A", "s2"), WallMark::wrong_gateway));
+  own.sender = "s3";
+  for (int i = 10; i < 20; ++i) {
+    tell(sut, own, i);
+    sut.look(at(i + 0.1));
+  }
+  ASSERT_EQ(sut.tiles().size(), 1u) << "the one that nobody listed is no loss";
+  EXPECT_EQ(state_word(*tile_of(sut, "A", "s3")), "ok");
+}
+
+TEST(WallCells, FewDeadGatewaysOfOneNameAreKept) {
+  WallCells sut(expecting({{.name = "A"}}));
+  for (int i = 0; i < 100; ++i) {
+    TestGateway claim{"s" + std::to_string(i), "A", "host-" + std::to_string(i)};
+    tell(sut, claim, 0.001 * i);
+  }
+  sut.look(at(1));
+  EXPECT_EQ(sut.tiles().size(), 100u);
+  sut.look(at(10));
+  EXPECT_EQ(sut.tiles().size(), WallCells::kMostDeadClaims);
 }
 
 TEST(WallCells, ARestartedGatewayTakesItsTile) {

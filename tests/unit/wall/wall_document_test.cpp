@@ -57,14 +57,17 @@ TEST_F(WallDocument, TellsSilenceWithItsBeginning) {
 }
 
 TEST_F(WallDocument, NamesTilesThatAreGone) {
-  TestGateway one{"s1", "A", "h1"};
-  TestGateway two{"s2", "A", "h2"};
-  tell(cells, one, 0);
-  tell(cells, two, 0);
-  EXPECT_EQ(changes(0)["tiles"].size(), 2u);
-  tell(cells, two, 4);
-  cells.look(at(4));
-  EXPECT_EQ(changes(4)["removed"].size(), 1u);
+  // Two processes that say that they are the same gateway of the same cell; the first ends.
+  TestGateway first{"s1", "A"};
+  TestGateway second{"s2", "A"};
+  second.run = "2";
+  tell(cells, first, 0);
+  tell(cells, second, 0.5);
+  tell(cells, first, 1);
+  EXPECT_EQ(changes(1)["tiles"].size(), 2u);
+  tell(cells, second, 4.5);
+  cells.look(at(4.5));
+  EXPECT_EQ(changes(4.5)["removed"].size(), 1u);
 }
 
 TEST_F(WallDocument, TheWholeGoesOnWithTheNextChanges) {
