@@ -13,6 +13,13 @@ import trainer as t
 PUMA = ",".join(f"puma_762_joint_{i}" for i in range(1, 7))
 TOUCH = f"motion touch {t.LEFT['into']} 0.12 speed=0.12 at=0.3; press 0.015 100000s"
 RECOVERED_WITHIN_S = 2.0
+# After a machine has stood still for 0.1 s the hand may stand where its contact chatters: then forces of less than NO_FORCE_N come one
+# by one. Where a force is taken away, none of them comes for longer than PAUSE_ROWS in a row, at 1 kHz.
+NO_FORCE_N = 0.05
+PAUSE_ROWS = 20
+# Of the looks at the force and at the CAN robot: a busy machine holds its simulator up, too.
+FORCE_LOOKS = 0.7
+FRESH_LOOKS = 0.8
 
 
 def _streams(domain, can_port, broker_port):
