@@ -251,6 +251,10 @@ void Gateway::Parts::start_mqtt(const MqttConfig& settings, bool publish) {
   if (playback != nullptr && !publish) return;
   MqttConfig wanted = settings;
   wanted.commands = wanted.commands && playback == nullptr;
+  if (wanted.sparkplug) {
+    auto file = home->file_to_write("records", fmt::format("sparkplug-{}.session", instance->info().name));
+    if (file) wanted.sparkplug->session_file = *std::move(file);
+  }
   mqtt = open_mqtt(wanted, {cell_name, instance->info().name, machine_clock, *owner,
                             [this](const script::CommandSource& source, std::string_view command,
                                    const std::string& why) { note_refused(source, command, why); }});

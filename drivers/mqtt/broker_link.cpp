@@ -110,7 +110,10 @@ Result<void> BrokerLink::wait_for_answer(Session& session) {
     if (session.end()) return std::unexpected(*session.end());
     if (stop_) return fail("the gateway ends");
     const Timestamp now = clock_.now();
-    if (session.asked() && !asked.known()) asked = now;
+    if (session.asked() && !asked.known()) {
+      asked = now;
+      conversation_.asked();
+    }
     if (asked.known() && now - asked >= kAnswerWithin)
       return fail(fmt::format("it has not answered for {:.0f} s", seconds(kAnswerWithin)),
                   "look whether it is a broker, and at its load");

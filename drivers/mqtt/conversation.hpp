@@ -25,6 +25,8 @@ class Conversation {
   virtual ~Conversation() = default;
   // Before each attempt to connect: the last will.
   [[nodiscard]] virtual Outgoing begin() = 0;
+  // The broker was asked for the connection, with the last will.
+  virtual void asked() {}
   // The topics to subscribe to.
   [[nodiscard]] virtual std::vector<std::string> subscriptions() const = 0;
   // The broker has accepted the connection, and was asked for the subscriptions.

@@ -19,7 +19,8 @@ constexpr double kLeastLook_hz = 10;  // for collisions
 
 std::string client_id_of(const MqttConfig& config, const Identity& identity) {
   if (!config.client_id.empty()) return config.client_id;
-  return fmt::format("cellmirror-{}-{}", topic_level(identity.cell), topic_level(identity.instance));
+  return fmt::format("cellmirror-{}-{}-{}", topic_level(identity.host), topic_level(identity.cell),
+                     topic_level(identity.instance));
 }
 
 }  // namespace

@@ -1,8 +1,38 @@
 #include "drivers/mqtt/sparkplug_conversation.hpp"
 
+#include "drivers/mqtt/session_file.hpp"
 #include "rt_core/base/log.hpp"
 
 namespace cellmirror::mqtt {
+
+namespace {
+
+std::uint8_t first_session(const std::string& file) {
+  if (file.empty()) return 0;
+  const auto last = read_session(file);
+  if (!last) log_warning("mqtt.sparkplug", "the number of the session begins at 0: {}", last.error().text());
+  return last && *last ? static_cast<std::uint8_t>(**last + 1) : std::uint8_t{0};
+}
+
+}  // namespace
+
+SparkplugConversation::SparkplugConversation(const SparkplugConfig& config, const Identity& identity,
+                                             const Clock& clock, std::function<void()> wake)
+    : clock_(clock),
+      wake_(std::move(wake)),
+      session_file_(config.session_file),
+      node_(config, identity, first_session(config.session_file)) {}
+
+void SparkplugConversation::asked() {
+  std::uint8_t session = 0;
+  {
+    const std::scoped_lock lock(mutex_);
+    session = node_.asked();
+  }
+  if (session_file_.empty()) return;
+  if (const auto written = write_session(session_file_, session); !written)
+    log_warning("mqtt.sparkplug", "the number of the session is not kept: {}", written.error().text());
+}
 
 void SparkplugConversation::summary(const CellSummary& summary) {
   {

@@ -22,9 +22,9 @@ class SparkplugConversation final : public Conversation {
   static constexpr Nanoseconds kRebirthEvery{1'000'000'000};  // at most, whatever comes
 
   // `clock` outlives it. `wake` is called after anything was put, by the thread that did.
+  // Reads and writes `config.session_file`; what fails there is logged.
   SparkplugConversation(const SparkplugConfig& config, const Identity& identity, const Clock& clock,
-                        std::function<void()> wake)
-      : clock_(clock), wake_(std::move(wake)), node_(config, identity) {}
+                        std::function<void()> wake);
 
   // Any thread.
   void summary(const CellSummary& summary);
@@ -32,6 +32,7 @@ class SparkplugConversation final : public Conversation {
   [[nodiscard]] std::vector<std::pair<std::string, std::uint64_t>> counters() const;
 
   [[nodiscard]] Outgoing begin() override;
+  void asked() override;
   [[nodiscard]] std::vector<std::string> subscriptions() const override { return {node_.command_topic()}; }
   void connected() override;
   [[nodiscard]] std::optional<Outgoing> next() override;
@@ -44,6 +45,7 @@ class SparkplugConversation final : public Conversation {
 
   const Clock& clock_;
   const std::function<void()> wake_;
+  const std::string session_file_;
   mutable std::mutex mutex_;  // of what follows
   SparkplugNode node_;
   Timestamp last_rebirth_;

@@ -35,6 +35,12 @@ std::string joined(const std::vector<std::string>& texts) {
   return out;
 }
 
+// A robot with a stream has current values only while that has data. What is not known yet is not valid.
+bool has_current_values(const RobotSummary& robot, bool has_stream) {
+  if (!robot.mirrored) return !has_stream;
+  return robot.state != DataState::none && robot.state != DataState::lost;
+}
+
 SparkplugMetric session_metric(std::uint8_t session) {
   return {kSessionMetric, SparkplugType::int64, std::int64_t{session}};
 }
@@ -64,7 +70,8 @@ bool SparkplugNode::Metrics::any_changed() const {
   return std::ranges::any_of(by_name, [](const auto& entry) { return entry.second.changed; });
 }
 
-SparkplugNode::SparkplugNode(const SparkplugConfig& config, const Identity& identity) : config_(config) {
+SparkplugNode::SparkplugNode(const SparkplugConfig& config, const Identity& identity, std::uint8_t first_session)
+    : config_(config), session_(first_session) {
   const auto text = SparkplugType::text;
   node_.set("Properties/Cell", text, cut_text(identity.cell));
   node_.set("Properties/Instance", text, cut_text(identity.instance));
@@ -90,6 +97,8 @@ void SparkplugNode::see(const CellSummary& summary) {
   for (const RobotSummary& robot : summary.robots | std::views::take(kMostSummaryRobots)) {
     Device& device = devices_[robot.id];
     device.gone = false;
+    device.has_stream = device.has_stream || robot.mirrored;
+    device.is_connected = has_current_values(robot, device.has_stream);
     device.metrics.set("Mirrored", boolean, robot.mirrored);
     device.metrics.set("Data State", text, std::string(word(robot.state)));
     device.metrics.set("Data Age", float64, number(robot.age_s));
@@ -116,8 +125,13 @@ std::string SparkplugNode::topic(std::string_view kind, std::string_view device)
 }
 
 Outgoing SparkplugNode::begin_session(std::int64_t time_ms) {
-  ++session_;
+  if (std::exchange(asked_, false)) ++session_;
   return death(time_ms);
+}
+
+std::uint8_t SparkplugNode::asked() {
+  asked_ = true;
+  return session_;
 }
 
 Outgoing SparkplugNode::death(std::int64_t time_ms) const {
@@ -153,7 +167,11 @@ Outgoing SparkplugNode::node_birth(std::int64_t time_ms) {
 
 std::optional<Outgoing> SparkplugNode::next_of(const std::string& name, Device& device, std::int64_t time_ms) {
   Metrics& metrics = device.metrics;
-  if (device.gone) return message("DDEATH", name, time_ms, {});
+  if (device.gone || !device.is_connected) {
+    metrics.born = false;
+    if (!std::exchange(device.told, false)) return std::nullopt;
+    return message("DDEATH", name, time_ms, {});
+  }
   if (!metrics.born) {
     metrics.born = device.told = true;
     return message("DBIRTH", name, time_ms, metrics.take(true));

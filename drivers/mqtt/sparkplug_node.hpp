@@ -21,14 +21,18 @@ namespace cellmirror::mqtt {
 
 class SparkplugNode {
  public:
-  SparkplugNode(const SparkplugConfig& config, const Identity& identity);
+  // `first_session`: bdSeq of the first session.
+  SparkplugNode(const SparkplugConfig& config, const Identity& identity, std::uint8_t first_session = 0);
 
   // New values.
   void see(const CellSummary& summary);
   void see(const RobotState& robot);
 
-  // A new connection is tried: its last will, NDEATH. The number bdSeq in it is that of the NBIRTH that follows.
+  // A new connection is tried: its last will, NDEATH. The number bdSeq in it is that of the NBIRTH that follows. It is
+  // the next one if the broker was asked since.
   [[nodiscard]] Outgoing begin_session(std::int64_t time_ms);
+  // The broker was asked for the connection (CONNECT): it may have the last will. Returns the number of the session.
+  std::uint8_t asked();
   // The connection stands, its subscription too, or NCMD asks for it: everything is born again.
   void bear_again();
   void disconnected();
@@ -56,8 +60,10 @@ class SparkplugNode {
   };
   struct Device {
     Metrics metrics;
-    bool told = false;  // DBIRTH was sent in this session
-    bool gone = false;  // the newest summary does not have it
+    bool told = false;          // DBIRTH was sent in this session
+    bool gone = false;          // the newest summary does not have it
+    bool has_stream = false;    // it was mirrored since it is known
+    bool is_connected = false;  // its values are current: it has DBIRTH, else DDEATH
   };
 
   [[nodiscard]] std::string topic(std::string_view kind, std::string_view device = {}) const;
@@ -72,7 +78,8 @@ class SparkplugNode {
   std::map<std::string, Device, std::less<>> devices_;  // by robot
   std::string last_device_;                             // that had a turn
   std::uint8_t seq_ = 0;                                // of the next message
-  std::uint8_t session_ = 255;                          // bdSeq
+  std::uint8_t session_;                                // bdSeq
+  bool asked_ = false;                                  // with this number
 };
 
 }  // namespace cellmirror::mqtt

@@ -12,6 +12,7 @@ namespace cellmirror {
 struct SparkplugConfig {
   std::string group;
   std::string edge_node;
+  std::string session_file = {};  // keeps the number of the session (bdSeq) from run to run; empty: it begins at 0
 };
 
 struct MqttConfig {

@@ -73,6 +73,25 @@ class Sparkplug(brokers.MqttCase):
         self.assertEqual([(one["name"], one["value"]) for one in death["metrics"]], [("bdSeq", 0)])
         self.check_order()
 
+    def test_a_robot_without_data_is_dead_and_sessions_are_counted_on(self):
+        births = lambda: len(self.of("DBIRTH", brokers.ROBOT))
+        self.assertTrue(g.eventually(births, every=0.5))
+        self.scratch.send(f"ROBOT {brokers.ROBOT} online")
+        self.assertTrue(g.eventually(lambda: self.of("DDEATH", brokers.ROBOT), every=0.5), "nothing sends")
+        before = births()
+        names = ",".join(f"puma_762_joint_{i}" for i in range(1, 7))
+        robot = g.sim_robot("dds", "--joint-names", names, "--rate", "50")
+        self.addCleanup(robot.close)
+        self.assertTrue(g.eventually(lambda: births() > before, every=0.5))
+        self.assertEqual(self.gateway.stop(), 0)
+        self.start()
+        self.assertTrue(g.eventually(lambda: [self.session_of(one) for one in self.of("NBIRTH")][-1] == 1, every=0.5))
+        self.check_order()
+
+    @staticmethod
+    def session_of(birth):
+        return next(one["value"] for one in birth["metrics"] if one["name"] == "bdSeq")
+
     def check_order(self):
         """The numbers have no gap, and nothing of a device comes before its birth."""
         expected, born = None, set()
@@ -86,6 +105,9 @@ class Sparkplug(brokers.MqttCase):
             expected = (expected + 1) % 256
             if kind == "DBIRTH":
                 born.add(topic.split("/")[4])
+            if kind == "DDEATH":
+                self.assertIn(topic.split("/")[4], born)
+                born.remove(topic.split("/")[4])
             if kind == "DDATA":
                 self.assertIn(topic.split("/")[4], born)
 

@@ -92,7 +92,7 @@ TEST_F(Node, IsBornWithItsDevicesAndThenTellsChanges) {
   node_.see(summary_with({"R1", "R2"}));
   EXPECT_TRUE(topics().empty()) << "nothing has changed";
   CellSummary changed = summary_with({"R1", "R2"});
-  changed.robots[1].state = DataState::lost;
+  changed.robots[1].state = DataState::stale;
   changed.health = CellHealth::attention;
   node_.see(changed);
   EXPECT_EQ(topics(), (std::vector<std::string>{"spBv1.0/hall/NDATA/n1", "spBv1.0/hall/DDATA/n1/R2"}));
@@ -114,6 +114,7 @@ TEST_F(Node, NumbersRunTo255AndEachSessionHasTheNextOne) {
   }
   for (std::size_t i = 0; i < numbers_.size(); ++i) EXPECT_EQ(numbers_[i], i % 256) << i;
   for (std::int64_t session = 1; session < 600; ++session) {
+    EXPECT_EQ(node_.asked(), (session - 1) % 256);
     EXPECT_EQ(node_.begin_session(1).payload,
               encode({.time_ms = 1, .metrics = {{"bdSeq", SparkplugType::int64, session % 256}}}));
   }
@@ -145,6 +146,49 @@ TEST_F(Node, AnotherConnectionBearsEverythingAgainAndForgetsWhatIsGone) {
   static_cast<void>(node_.begin_session(1));
   node_.bear_again();
   EXPECT_EQ(topics(), (std::vector<std::string>{"spBv1.0/hall/NBIRTH/n1", "spBv1.0/hall/DBIRTH/n1/R999"}));
+}
+
+TEST_F(Node, AnAttemptThatNoBrokerHeardUsesNoNumber) {
+  const std::string first = node_.begin_session(1).payload;
+  EXPECT_EQ(node_.begin_session(1).payload, first);
+  EXPECT_EQ(node_.asked(), 0);
+  EXPECT_NE(node_.begin_session(1).payload, first);
+  SparkplugNode later({"hall", "n1"}, {"c1", "default", "pc", "1"}, 255);
+  static_cast<void>(later.begin_session(1));
+  EXPECT_EQ(later.asked(), 255);
+  EXPECT_EQ(later.begin_session(1).payload, first);
+}
+
+TEST_F(Node, ARobotWhoseStreamIsLostOrOfflineIsDead) {
+  CellSummary summary = summary_with({"R1", "R2"});
+  for (RobotSummary& robot : summary.robots) robot.mirrored = false;
+  node_.see(summary);
+  static_cast<void>(node_.begin_session(1));
+  node_.bear_again();
+  EXPECT_EQ(topics().size(), 3U) << "simulated robots are alive";
+  RobotSummary& robot = summary.robots[0];
+  const auto devices = [&](bool mirrored, DataState state) {
+    robot.mirrored = mirrored;
+    robot.state = state;
+    node_.see(summary);
+    std::vector<std::string> out;
+    for (const std::string& topic : topics()) {
+      if (topic.find("/D") != std::string::npos) out.push_back(topic.substr(13));
+    }
+    return out;
+  };
+  using Topics = std::vector<std::string>;
+  EXPECT_EQ(devices(true, DataState::none), Topics{"DDEATH/n1/R1"}) << "nothing is known yet";
+  EXPECT_EQ(devices(true, DataState::fresh), Topics{"DBIRTH/n1/R1"});
+  EXPECT_EQ(devices(true, DataState::stale), Topics{"DDATA/n1/R1"});
+  EXPECT_EQ(devices(true, DataState::lost), Topics{"DDEATH/n1/R1"});
+  EXPECT_EQ(devices(true, DataState::lost), Topics{});
+  EXPECT_EQ(devices(true, DataState::fresh), Topics{"DBIRTH/n1/R1"});
+  EXPECT_EQ(devices(false, DataState::none), Topics{"DDEATH/n1/R1"}) << "offline";
+  node_.disconnected();
+  static_cast<void>(node_.begin_session(1));
+  node_.bear_again();
+  EXPECT_EQ(topics(), (Topics{"spBv1.0/hall/NBIRTH/n1", "spBv1.0/hall/DBIRTH/n1/R2"})) << "it has no birth";
 }
 
 TEST_F(Node, DevicesTakeTurns) {
