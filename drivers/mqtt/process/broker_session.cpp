@@ -237,7 +237,7 @@ bool BrokerSession::wants_to_write() const { return mosquitto_want_write(impl_->
 
 void BrokerSession::read_and_write(short events) {
   if (socket() < 0) {
-    impl_->ended({"the connection was lost", {}});
+    impl_->ended(connection_lost(MOSQ_ERR_CONN_LOST, {}));
   } else {
     impl_->read_and_write(events);
   }

@@ -15,6 +15,9 @@ namespace {
 
 constexpr int kFirstError = 128;  // of the reason codes of MQTT 5 (2.4)
 constexpr std::size_t kMostDetails = 200;
+// mosquitto 2.0 gives no reason to a client whose id another one uses: it just ends the connection.
+constexpr const char* kRemedyOfLost =
+    "look at the broker and at the network, and whether another client has the same client_id";
 
 std::string remedy_of(int code) {
   switch (code) {
@@ -68,9 +71,9 @@ Error connection_lost(int code, const std::string& details) {
   switch (code) {
     case MOSQ_ERR_SUCCESS:
     case MOSQ_ERR_CONN_LOST:
-      return {"the connection was lost" + more, {}};
+      return {"the connection was lost" + more, kRemedyOfLost};
     case MOSQ_ERR_ERRNO:
-      return {fmt::format("the connection was lost: {}{}", std::strerror(errno), more), {}};
+      return {fmt::format("the connection was lost: {}{}", std::strerror(errno), more), kRemedyOfLost};
     case MOSQ_ERR_KEEPALIVE:
       return {"the broker does not answer" + more, "look at its load and at the network"};
     case MOSQ_ERR_TLS:

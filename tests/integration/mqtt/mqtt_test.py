@@ -23,6 +23,14 @@ class Saying(brokers.MqttCase):
         self.addCleanup(listener.close)
         return listener
 
+    def test_another_client_with_the_same_id_is_suspected(self):
+        self.make(self.broker, client_id="same")
+        self.start()
+        other = g.Process(["mosquitto_sub", "-h", "127.0.0.1", "-p", str(self.broker.port), "-t", "x", "-i", "same"])
+        self.addCleanup(other.close)
+        self.assertTrue(g.eventually(lambda: any("same client_id" in one for one in self.problems())), self.problems())
+        self.assertTrue(g.eventually(lambda: "another client has the same client_id" in self.gateway.output()), self.gateway.output())
+
     def test_state_summary_joint_states_and_the_end(self):
         brokers.publish(self.broker, f"{BASE}/state", "rubbish of others", ["-r"])
         self.make(self.broker, joint_states_hz=20)
