@@ -4,7 +4,9 @@ judged here, only reports of the sanitizers and how the programs end. docs/sanit
 
 import json
 import os
+import pathlib
 import random
+import signal
 import sys
 import threading
 import time
@@ -22,6 +24,13 @@ SECONDS = float(os.environ.get("SCENARIO_SECONDS", "8"))  # of each running gate
 PATIENCE = 120  # seconds; sanitizers make a program up to ten times slower
 WISHES = ({}, {"view": 0}, {"view": 3}, {"camera": "UMG_Kamera_1"}, {"camera": "CAMERA_5"},
           {"free": {"viewpoint_m": [4, -4, 3], "lookpoint_m": [4, 0, 1], "twist_rad": 0, "opening_angle_rad": 0.7}})
+
+
+def takes_signal(pid, which):
+    """Whether the program handles or blocks the signal (proc(5), status)."""
+    masks = [int(line.split()[1], 16) for line in pathlib.Path(f"/proc/{pid}/status").read_text().splitlines()
+             if line.startswith(("SigBlk:", "SigCgt:"))]
+    return any(mask >> (which - 1) & 1 for mask in masks)
 
 
 class PageClient(threading.Thread):
@@ -233,7 +242,8 @@ class TransferCell(Sanitized):
         self.cell("transfer_cell", startup=True)
         self.replace("[collision]", "[collision]\nactive = false")  # to find the pairs takes long with sanitizers, and goes on
         self.gateway = g.Gateway(self.scratch, "--rate", "200", wait=False, pictures=True, page=True)
-        time.sleep(0.5)
+        # Before that the kernel ends it, as any program.
+        self.assertTrue(g.eventually(lambda: takes_signal(self.gateway.child.pid, signal.SIGINT), PATIENCE))
         self.assertEqual(self.gateway.stop(PATIENCE), 0, self.gateway.output())
 
     def test_programs_that_come_to_their_end(self):
