@@ -215,7 +215,7 @@ class Controllers(unittest.TestCase):
 
     def test_a_trajectory_is_not_executed_again_by_the_next_process_of_dds(self):
         # Cyclone DDS gives a new reader what the one that was killed had not acknowledged.
-        for round_ in range(3):
+        for round_ in range(2):
             self.command((0.3, 0.05 * (round_ + 1)))
             self.assertEqual(self.settled(), "arrived")
             taken = self.status()["taken"]
