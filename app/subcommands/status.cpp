@@ -3,7 +3,6 @@
 
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -58,29 +57,29 @@ int print_once(const StatusOptions& options) {
   return kExitDone;
 }
 
+Result<StreamWaitResult> streams_of(const std::string& document, const StreamWait& wanted) {
+  try {
+    return look_at_streams(nlohmann::json::parse(document), wanted);
+  } catch (const nlohmann::json::exception& error) {
+    return fail(fmt::format("the gateway's status cannot be read: {}", error.what()),
+                "gateway and this program may be of different versions");
+  }
+}
+
 // A gateway that does not answer yet may still start.
 int wait_for_streams(const StreamWait& wanted, const StatusOptions& options) {
   using Clock = std::chrono::steady_clock;
-  const auto end =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.timeout_s));
+  const auto limit = std::chrono::duration<double>(options.timeout_s);
+  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
   for (;;) {
-    std::string missing;
     const auto document = control_request(options.instance, R"({"request":"status"})", kObserverTimeout);
-    if (document) {
-      const auto status = nlohmann::json::parse(*document, nullptr, false);
-      if (status.is_discarded()) return refuse("the gateway's answer is no JSON document");
-      const StreamWaitResult result = look_at_streams(status, wanted);
-      if (result.missing.empty()) {
-        if (options.json) {
-          std::printf("%s\n", document->c_str());
-        } else {
-          std::printf("%s: %s\n", wanted.state.c_str(), fmt::format("{}", fmt::join(result.there, ", ")).c_str());
-        }
-        return kExitDone;
-      }
-      missing = result.missing;
-    } else {
-      missing = document.error().text() + others();
+    const auto streams = document ? streams_of(*document, wanted) : StreamWaitResult{};
+    if (!streams) return refuse(streams.error().text());
+    const std::string missing = document ? streams->missing : document.error().text() + others();
+    if (missing.empty()) {
+      const std::string there = fmt::format("{}: {}", wanted.state, fmt::join(streams->there, ", "));
+      std::printf("%s\n", options.json ? document->c_str() : there.c_str());
+      return kExitDone;
     }
     if (Clock::now() >= end)
       return refuse(fmt::format("not {} after {:g} s: {}", wanted.state, options.timeout_s, missing));

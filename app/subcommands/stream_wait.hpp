@@ -1,4 +1,4 @@
-// What `cellmirror status --wait` waits for: that the streams of robots have a state.
+// The condition of `cellmirror status --wait`: the streams of robots have a certain state.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

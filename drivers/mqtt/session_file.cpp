@@ -35,7 +35,7 @@ Result<std::optional<std::uint8_t>> read_session(const std::string& file) {
   std::uint8_t session = 0;
   const auto [stop, error] = std::from_chars(text.data(), end, session);
   if (error != std::errc() || std::string_view(stop, end) != "\n")
-    return fail(fmt::format("{} holds no number from 0 to 255", file), "remove the file");
+    return fail(fmt::format("{} does not contain a number from 0 to 255", file), "remove the file");
   return session;
 }
 

@@ -10,7 +10,7 @@
 
 namespace cellmirror::mqtt {
 
-// None where there is no such file. Fails where it cannot be read or holds no number from 0 to 255.
+// Returns none if the file does not exist. Fails if it cannot be read or does not contain a number from 0 to 255.
 [[nodiscard]] Result<std::optional<std::uint8_t>> read_session(const std::string& file);
 // Replaces the file whole, with mode 0600.
 [[nodiscard]] Result<void> write_session(const std::string& file, std::uint8_t session);

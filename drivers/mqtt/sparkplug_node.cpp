@@ -35,7 +35,7 @@ std::string joined(const std::vector<std::string>& texts) {
   return out;
 }
 
-// A robot with a stream has current values only while that has data. What is not known yet is not valid.
+// A robot with a stream has current values only while the stream has data.
 bool has_current_values(const RobotSummary& robot, bool has_stream) {
   if (!robot.mirrored) return !has_stream;
   return robot.state != DataState::none && robot.state != DataState::lost;

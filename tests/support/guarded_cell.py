@@ -17,7 +17,7 @@ RECOVERED_WITHIN_S = 2.0
 # by one. Where a force is taken away, none of them comes for longer than PAUSE_ROWS in a row, at 1 kHz.
 NO_FORCE_N = 0.05
 PAUSE_ROWS = 20
-# Of the looks at the force and at the CAN robot: a busy machine holds its simulator up, too.
+# Least share of the looks at the force and at the CAN robot: a busy machine delays the simulator, too.
 FORCE_LOOKS = 0.7
 FRESH_LOOKS = 0.8
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kFirstError = 128;  // of the reason codes of MQTT 5 (2.4)
 constexpr std::size_t kMostDetails = 200;
-// mosquitto 2.0 gives no reason to a client whose id another one uses: it just ends the connection.
+// mosquitto 2.0 ends the connection without a reason if another client connects with the same id.
 constexpr const char* kRemedyOfLost =
     "look at the broker and at the network, and whether another client has the same client_id";
 
