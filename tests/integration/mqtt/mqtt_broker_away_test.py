@@ -1,6 +1,5 @@
 """A broker that dies, comes back, stands still, or was never there."""
 
-import os
 import signal
 import socket
 import unittest
@@ -19,10 +18,6 @@ class Away(brokers.MqttCase):
         self.broker = brokers.Broker()
         self.addCleanup(self.broker.close)
 
-    def resident_bytes(self):
-        with open(f"/proc/{self.gateway.child.pid}/statm", encoding="ascii") as file:
-            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-
     def test_a_broker_that_was_killed_is_found_again_and_hears_what_happened(self):
         self.make(self.broker, joint_states_hz=50)
         self.start()
@@ -34,11 +29,12 @@ class Away(brokers.MqttCase):
         # The problem is an alarm, which is an event that waits.
         self.assertTrue(g.eventually(lambda: self.counters()["events"] > 0))
         self.assertTrue(g.eventually(lambda: self.counters()["joint_states_dropped"] > 2000))
-        self.assertLess(self.counters()["waiting_bytes"], 3 << 20)
-        before = self.resident_bytes()
-        dropped = self.counters()["joint_states_dropped"]
+        before = self.counters()
+        self.assertLess(before["waiting_bytes"], 3 << 20)
+        dropped = before["joint_states_dropped"]
         self.assertTrue(g.eventually(lambda: self.counters()["joint_states_dropped"] > dropped + 2000))
-        self.assertLess(self.resident_bytes() - before, 8 << 20, "what waits is bounded")
+        # 2000 joint states are more than half a megabyte; the events of these seconds are a few kilobytes.
+        self.assertLess(self.counters()["waiting_bytes"] - before["waiting_bytes"], 100_000, "what waits is bounded")
         self.broker.start()
         listener = brokers.Listener(self.broker, f"{BASE}/#")
         self.addCleanup(listener.close)
