@@ -55,6 +55,16 @@ class EarlyBuild:
         self.process.communicate()  # the pipe ends with the last of the group: two ninjas in one folder would be one too many
 
 
+def later_lists(options: argparse.Namespace) -> list[str]:
+    lists = ["cmake/packages-later.txt"]
+    if options.peers:
+        lists.append("cmake/packages-peers.txt")
+    # User-Mode Linux fails on these processors (tests/support/run-in-vcan.sh).
+    if "amx_tile" in Path("/proc/cpuinfo").read_text(encoding="ascii").split():
+        lists.append("cmake/packages-amx.txt")
+    return lists
+
+
 class LaterPackages:
     """Installs packages that only the tests need, while the release is built."""
 
@@ -76,7 +86,7 @@ class Check:
         self.options = options
         self.total = Report()
         self.rows: list[tuple[str, float, str]] = []
-        self.packages = LaterPackages("cmake/packages-later.txt" + (" cmake/packages-peers.txt" if options.peers else ""))
+        self.packages = LaterPackages(" ".join(later_lists(options)))
 
     def stage(self, name: str, action) -> bool:
         """Runs `action`, which returns a Report; False if anything in it failed."""
