@@ -134,7 +134,8 @@ Result<std::string> CellRobots::set_joint_parameter(JointParameter which, std::s
   if (auto set = (*robot)->set_joint_parameter(which, values); !set) return std::unexpected(set.error());
   if (which == JointParameter::start_position) return begin_at_start(**robot);
   Result<void> followed;
-  if (which == JointParameter::max_velocity) followed = couplings_.update_velocities(**robot);
+  if (which == JointParameter::max_velocity || which == JointParameter::max_acceleration)
+    followed = couplings_.update_limits(**robot);
   if (which == JointParameter::max_range || which == JointParameter::min_range)
     followed = fleet_.update_limits(**robot);
   if (!followed) return std::unexpected(followed.error());

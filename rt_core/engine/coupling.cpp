@@ -22,6 +22,8 @@ bool joints_are_sound(const Coupling& coupling, const RobotTickState& master, co
     driven |= bit;
     const double velocity = coupling.max_velocity[joint.slave_joint];
     if (!std::isfinite(velocity) || velocity <= 0.0) return false;
+    // Also where it is not a number.
+    if (!(coupling.max_acceleration[joint.slave_joint] > 0.0)) return false;
   }
   return true;
 }

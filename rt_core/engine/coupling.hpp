@@ -8,6 +8,7 @@
 
 #include "rt_core/base/capacity.hpp"
 #include "rt_core/base/real_time.hpp"
+#include "rt_core/engine/limiter.hpp"
 #include "rt_core/ports/coupled_joint.hpp"
 #include "rt_core/ports/robot_parameters.hpp"
 
@@ -17,14 +18,15 @@ class RobotSlot;
 
 using CoupledJoints = std::array<CoupledJoint, kMaxJointsPerRobot>;
 
-// Of one slave. A coupled joint follows to the master's value, not faster than the slave's own velocity limit and not
-// beyond its range; the slave's other joints stay free.
+// Of one slave. A coupled joint follows to the master's value within the slave's own velocity, acceleration and range
+// (rt_core/motion/pursuit.hpp); the slave's other joints stay free.
 struct Coupling {
   std::uint8_t master = 0;  // slots
   std::uint8_t slave = 0;
   std::uint8_t count = 0;
   CoupledJoints joints{};
-  JointValues max_velocity{};  // rad/s or m/s, of the slave's joints
+  JointValues max_velocity{};                  // rad/s or m/s, of the slave's joints
+  JointValues max_acceleration = unlimited();  // rad/s2 or m/s2, likewise
 
   [[nodiscard]] std::uint16_t slave_joints() const CELL_RT {
     unsigned mask = 0;

@@ -51,6 +51,8 @@ class JointGate {
   LimiterVerdict jump(const JointValues& positions, JointSet joints) CELL_RT;
   // A joint that stands beyond its limits of position, since they were narrowed, may come back and not go further.
   LimiterVerdict step(const GatedStep& step) CELL_RT;
+  // How a joint of a simulated robot moved in the tick before.
+  [[nodiscard]] const JointRate& rate(std::size_t joint) const CELL_RT { return rates_[joint]; }
   // In this tick these joints do not move.
   void stand(JointSet joints) CELL_RT;
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rt_core/engine/state_transfer.hpp"
+#include "rt_core/motion/pursuit.hpp"
 
 namespace cellmirror::engine {
 
@@ -172,32 +173,36 @@ bool RobotSlot::follow(const RobotTickState& master, const Coupling& coupling, d
     const JointTickState& of_master = master.joints[pair.master_joint];
     const bool known = master.mode == RobotMode::simulated ||
                        (master.mode == RobotMode::mirrored && of_master.state == DataState::fresh);
-    if (known) {
-      const double max_velocity = coupling.max_velocity[pair.slave_joint];
-      moved = follow_joint(of_master.position, pair.slave_joint, max_velocity, dt, follow) || moved;
-    } else {
-      follow.holding = true;
-      gate_.stand(static_cast<JointSet>(1U << pair.slave_joint));
-    }
+    if (!known) follow.holding = true;
+    moved = follow_joint(known ? &of_master : nullptr, pair.slave_joint, coupling, dt, follow) || moved;
   }
   gate_.set_follow(follow);
   return moved;
 }
 
-bool RobotSlot::follow_joint(double wanted, std::size_t joint, double max_velocity, double dt,
+bool RobotSlot::follow_joint(const JointTickState* master, std::size_t joint, const Coupling& coupling, double dt,
                              FollowTickState& follow) CELL_RT {
   const double present = state().joints[joint].position;
-  const double within = std::clamp(wanted, std::min(gate_.limits().lower[joint], present),
-                                   std::max(gate_.limits().upper[joint], present));
-  const double max_step = max_velocity * dt;
-  const bool arrives = std::abs(within - present) <= max_step;
-  const double next = arrives ? within : present + std::clamp(within - present, -max_step, max_step);
+  const double before = gate_.rate(joint).velocity;
+  // As in the gate: a joint that stands beyond its range may come back into it.
+  const motion::PursuitLimits limits{.lower = std::min(gate_.limits().lower[joint], present),
+                                     .upper = std::max(gate_.limits().upper[joint], present),
+                                     .velocity = coupling.max_velocity[joint],
+                                     .acceleration = coupling.max_acceleration[joint]};
+  motion::PursuitStep pursuit{.present = present, .velocity = before, .dt = dt};
+  if (master != nullptr) {
+    pursuit.target = master->position;
+    pursuit.target_velocity = master->velocity;
+  }
+  const double next = master != nullptr ? motion::pursue(pursuit, limits) : motion::brake(pursuit, limits);
   GatedStep step{.joints = static_cast<JointSet>(1U << joint), .dt = dt};
   step.next[joint] = next;
   step.velocity[joint] = dt > 0.0 ? (next - present) / dt : 0.0;
-  step.fastest[joint] = max_velocity;
+  // Where the limit was lowered during the motion, the joint brakes to it.
+  step.fastest[joint] = std::max(limits.velocity, std::abs(before));
   if (gate_.step(step) != LimiterVerdict::passed) return false;
-  if (std::abs(wanted - next) > kLimitSlack) follow.limited = static_cast<JointSet>(follow.limited | 1U << joint);
+  const bool limited = master != nullptr && std::abs(master->position - next) > kLimitSlack;
+  if (limited) follow.limited = static_cast<JointSet>(follow.limited | 1U << joint);
   return next != present;
 }
 

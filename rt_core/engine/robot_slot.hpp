@@ -70,7 +70,9 @@ class RobotSlot {
  private:
   void retire(Lease<const kinematics::Chain> chain) CELL_RT;
   void give_back_chains() CELL_RT;
-  bool follow_joint(double wanted, std::size_t joint, double max_velocity, double dt, FollowTickState& follow) CELL_RT;
+  // Towards the master's joint, or to rest where that is null.
+  bool follow_joint(const JointTickState* master, std::size_t joint, const Coupling& coupling, double dt,
+                    FollowTickState& follow) CELL_RT;
   [[nodiscard]] JointSet free_joints() const CELL_RT { return static_cast<JointSet>(~state().follow.joints); }
   [[nodiscard]] bool simulated() const CELL_RT { return state().mode == RobotMode::simulated; }
 

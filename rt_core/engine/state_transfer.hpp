@@ -48,9 +48,14 @@ void transfer(Archive& archive, engine::JointRate& value) CELL_RT {
 
 template <class Archive>
 void transfer(Archive& archive, engine::Coupling& value) CELL_RT {
+  // Recordings of versions that had no accelerations have the number alone.
+  constexpr std::uint16_t kWithAccelerations = 0x100;
   archive(value.master, value.slave, value.max_velocity);
-  archive.bounded(value.count, kMaxJointsPerRobot);
+  auto number = static_cast<std::uint16_t>(value.count | kWithAccelerations);
+  archive.bounded(number, kMaxJointsPerRobot | kWithAccelerations);
+  value.count = static_cast<std::uint8_t>(number & 0xFF);
   for (CoupledJoint& joint : value.joints) archive(joint.master_joint, joint.slave_joint);
+  if ((number & kWithAccelerations) != 0) archive(value.max_acceleration);
 }
 
 template <class Archive>

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "rt_core/motion/planner.hpp"
+
 namespace cellmirror::app {
 
 namespace {
@@ -48,6 +50,12 @@ Result<void> CouplingService::send(std::string_view slave, const planning::Robot
                             .count = static_cast<std::uint8_t>(coupled.joints.size()),
                             .joints = {},
                             .max_velocity = robot.parameters().max_velocity};
+  for (std::size_t i = 0; i < robot.joint_count(); ++i) {
+    const double acceleration = robot.parameters().max_acceleration[i];
+    // Where the component file gives none, as in a move.
+    coupling.max_acceleration[i] =
+        acceleration > 0 ? acceleration : coupling.max_velocity[i] / motion::kDefaultRampSeconds;
+  }
   std::ranges::copy(coupled.joints, coupling.joints.begin());
   auto sent = fleet_.send(engine::Couple{fleet_.lend(std::make_shared<const engine::Coupling>(coupling))});
   if (!sent) return std::unexpected(std::move(sent.error()));
@@ -71,7 +79,7 @@ void CouplingService::follow() {
   for (const std::string& slave : gone) couplings_.forget(slave);
 }
 
-Result<void> CouplingService::update_velocities(const RobotModel& robot) {
+Result<void> CouplingService::update_limits(const RobotModel& robot) {
   follow();  // a command before this one may have deleted the master
   const planning::RobotCoupling* found = couplings_.find(robot.id());
   return found == nullptr ? Result<void>() : send(robot.id(), *found);

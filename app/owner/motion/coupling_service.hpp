@@ -29,8 +29,8 @@ class CouplingService final : public CoupledRobots {
   Result<void> uncouple(std::string_view master, std::span<const SlaveJoints> slaves);
   // Forgets couplings of robots that the cell does not have any more. Often.
   void follow();
-  // After a change of the robot's velocity limits.
-  Result<void> update_velocities(const RobotModel& robot);
+  // After a change of the robot's velocities or accelerations.
+  Result<void> update_limits(const RobotModel& robot);
 
   [[nodiscard]] std::uint16_t coupled_joints(std::string_view robot) const override;
   [[nodiscard]] std::string_view master_of(std::string_view robot) const override;

@@ -1,6 +1,7 @@
 // Robots that follow others (MASTER_SLAVE), in the tick.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -102,6 +103,39 @@ TEST_F(CouplingTest, ASlaveIsNotFasterThanItsOwnLimitAndTellsThatItLags) {
   }
   EXPECT_DOUBLE_EQ(before, 0.4);
   EXPECT_EQ(robot(kSlave).follow.limited, 0);
+}
+
+// The master jumps: what a slave makes of it is a motion.
+TEST_F(CouplingTest, ASlaveStaysWithinItsAccelerationAlsoAtTheEndOfItsRangeAndWhenItHolds) {
+  constexpr double kHardest = 15.0;
+  Coupling limited = coupling(kMaster, kSlave);
+  limited.max_acceleration.fill(kHardest);
+  ASSERT_TRUE(accepts(limited));
+  double before = position(kSlave, 0);
+  double velocity = 0;
+  double hardest = 0;
+  const auto watch = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      tick();
+      const double now = (position(kSlave, 0) - before) / 1e-3;
+      hardest = std::max(hardest, std::abs(now - velocity) / 1e-3);
+      velocity = now;
+      before = position(kSlave, 0);
+    }
+  };
+  put(kMaster, 0.0, 3.0, 0.0);
+  watch(1000);
+  EXPECT_NEAR(before, 0.5, 1e-9);
+  put(kMaster, 0.0, -0.4, 0.0);
+  watch(300);
+  mirror_master();  // no data: the slave is on its way, and brakes
+  watch(100);
+  EXPECT_TRUE(robot(kSlave).follow.holding);
+  EXPECT_EQ(velocity, 0.0);
+  EXPECT_GT(before, -0.4);
+  EXPECT_GT(hardest, 0.9 * kHardest);
+  EXPECT_LT(hardest, 1.001 * kHardest);
+  EXPECT_EQ(robot(kSlave).refused_setpoints, 0U);
 }
 
 TEST_F(CouplingTest, ASlaveStaysWithinItsRange) {
@@ -213,6 +247,11 @@ TEST_F(CouplingTest, WhatIsNotSoundIsRefused) {
   EXPECT_FALSE(accepts(coupling(kMaster, 40)));
   EXPECT_FALSE(accepts(coupling(kMaster, kSlave, 0.0)));
   EXPECT_FALSE(accepts(coupling(kMaster, kSlave, std::numeric_limits<double>::infinity())));
+  Coupling without_acceleration = coupling(kMaster, kSlave);
+  without_acceleration.max_acceleration.fill(0.0);
+  EXPECT_FALSE(accepts(without_acceleration));
+  without_acceleration.max_acceleration.fill(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(accepts(without_acceleration));
   EXPECT_FALSE(accepts(Couple{}));
   Coupling wrong = coupling(kMaster, kSlave);
   wrong.count = 0;

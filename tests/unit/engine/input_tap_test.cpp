@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <vector>
 
 #include "rt_core/engine/engine.hpp"
 #include "rt_core/engine/input_commands.hpp"
+#include "rt_core/engine/state_transfer.hpp"
 #include "rt_core/rt/allocation_guard.hpp"
 #include "tests/unit/engine/commands.hpp"
 
@@ -193,6 +195,30 @@ TEST_F(CommandBytesTest, EachCommandComesBackAsItWas) {
   expect_same(HapticCommand(CloseHaptic{.channel = 1}));
   expect_same(HapticCommand(ResetHaptic{.channel = 1}));
   expect_same(HapticCommand(SetDeviceGone{.channel = 1, .gone = true}));
+}
+
+// Before slaves had accelerations.
+TEST_F(CommandBytesTest, ACouplingOfAnOlderRecordingIsRead) {
+  std::vector<std::byte> bytes(1024);
+  StateWriter out(bytes);
+  std::uint8_t master = 3;
+  std::uint8_t slave = 1;
+  JointValues velocity{};
+  velocity.fill(2);
+  std::uint16_t count = 2;
+  out(master, slave, velocity);
+  out.bounded(count, kMaxJointsPerRobot);
+  for (std::uint8_t i = 0; i < 2 * kMaxJointsPerRobot; ++i) out(i);
+  StateReader in(out.written());
+  Coupling found;
+  transfer(in, found);
+  EXPECT_TRUE(in.ok());
+  EXPECT_TRUE(in.at_end());
+  EXPECT_EQ(found.master, 3);
+  EXPECT_EQ(found.count, 2);
+  EXPECT_EQ(found.joints[1].master_joint, 2);
+  EXPECT_EQ(found.max_velocity[0], 2);
+  EXPECT_EQ(found.max_acceleration[0], std::numeric_limits<double>::infinity());
 }
 
 TEST_F(CommandBytesTest, AModeThatNoOwnerSetsIsRefused) {
