@@ -70,6 +70,7 @@ void add_robots(JsonWriter& out, const LiveSources& sources) {
         .member("age_s", state.online ? age_s(sources.now, tick.receive_time) : std::nullopt)
         .member("active", robot_snapshot.id == sources.cell_state.active_robot)
         .member("moving", tick.motion.moving)
+        .member("refused_setpoints", tick.refused_setpoints)
         .member("condition", condition_of(sources, robot_snapshot, state));
     add_joints(out, state, sources.cell_state.cell->robot(robot_snapshot.slot));
     out.end_object();

@@ -70,6 +70,10 @@ void add_robots(MetricsText& out, const LiveSources& sources) {
   count(&engine::RobotTickHead::implausible_values);
   out.family("cellmirror_robot_conflicting_total", "counter", "Values of a mirrored robot that two senders give.");
   count(&engine::RobotTickHead::conflicting_values);
+  out.family("cellmirror_robot_refused_setpoints_total", "counter", "Steps beyond the limits of a robot, which stood.");
+  for_robots(out, sources, [&](const RobotSnapshot& robot, const RobotState&) -> std::optional<double> {
+    return static_cast<double>(sources.tick.robots.at(robot.slot).refused_setpoints);
+  });
   for_streams(out, sources, "cellmirror_stream_received_total", "Samples received.",
               [](const JointStreamStatus& status) { return status.received; });
   for_streams(out, sources, "cellmirror_stream_lost_total", "Samples known to be missing.",

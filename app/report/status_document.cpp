@@ -203,6 +203,7 @@ json robots_json(const StatusSources& sources) {
                    {"motion", motion_json(robot_snapshot, tick.motion, state.joints.size())},
                    {"parameters", parameters_json(robot_snapshot.parameters, state.joints.size())},
                    {"refused_values", tick.refused_values},
+                   {"refused_setpoints", tick.refused_setpoints},
                    {"plausibility", plausibility_json(tick, state, sources.now)}});
   }
   return out;

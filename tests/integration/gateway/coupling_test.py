@@ -1,5 +1,6 @@
 """Master and slave in the running gateway: robots that follow others, mirrored masters included; what cannot be is refused."""
 
+import json
 import math
 import unittest
 
@@ -91,6 +92,32 @@ class Coupling(unittest.TestCase):
         coupling = self.couplings()[SLAVE]
         self.assertAlmostEqual(coupling["joints"][0]["lag_rad"], math.radians(20), delta=1e-6)
         self.done("rob_jnt_max_range 90 90 90 90 90 90")
+
+    def test_a_slave_accelerates_and_brakes_within_its_own_limit(self):
+        limit = 5.0  # rad/s2
+        for command in (f"ROBACT {SLAVE}", f"rob_jnt_max_acc {' '.join([str(limit)] * 6)}",
+                        f"POS_ROB {MASTER} JOINT_ABS 60"):
+            self.done(command)
+        self.arrives(MASTER, 1, 60)
+        file = self.scratch.root / "slave.mcap"
+        recorder = g.Process([g.BIN / "cellmirror", "record", "-o", file, "--instance", self.scratch.instance, "--rate", "1000",
+                              "--topics", "/joint_states"], self.scratch.environment)
+        self.addCleanup(recorder.close)
+        self.assertTrue(g.eventually(lambda: any(one["messages"] > 0 for one in self.scratch.status()["recordings"])))
+        self.done(f"MASTER_SLAVE on {MASTER} 1 {SLAVE} 1 J_1 J_1")
+        self.arrives(SLAVE, 1, 60)
+        self.assertEqual(recorder.stop(), 0)
+        done = self.scratch.cellmirror("recording", "export", str(file), "--topic", "/joint_states", "--json")
+        ticks = [message["values"] for message in json.loads(done.stdout)["messages"]]
+        joint = next(key for key, name in ticks[0].items() if name == f"{SLAVE}/J_1").removeprefix("name")
+        velocities = [tick["velocity" + joint] for tick in ticks]
+        times = [tick["header.stamp.sec"] + 1e-9 * tick["header.stamp.nanosec"] for tick in ticks]
+        # A tick that the recording has not got makes a step of two periods; both are judged by their time.
+        steps = [abs(b - a) / max(t - s, 0.001) for a, b, s, t in zip(velocities, velocities[1:], times, times[1:])]
+        self.assertGreater(max(velocities), 0.5, "it has moved")
+        self.assertLess(max(steps), 2 * limit)
+        self.assertEqual(self.scratch.robot(SLAVE)["refused_setpoints"], 0)
+        self.done("rob_jnt_max_acc 15 15 15 15 15 15")
 
     def test_commands_do_not_move_coupled_joints_but_the_others(self):
         self.done(f"MASTER_SLAVE on {MASTER} 1 {SLAVE} 1 J_1 J_1")

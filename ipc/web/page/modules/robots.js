@@ -92,7 +92,7 @@ export class Robots {
     setAttribute(card.node, "data-state", state);
     setText(card.badge, kStateTexts[state] ?? state);
     setText(card.age, robot.mode === "mirrored" ? age(robot.age_s) : "");
-    setText(card.flags, [robot.active ? "active" : "", robot.moving ? "moving" : ""].filter(Boolean).join(", "));
+    setText(card.flags, [robot.active ? "active" : "", robot.moving ? "moving" : "", refusals_of(robot)].filter(Boolean).join(", "));
     const note = typeof robot.condition === "string" ? robot.condition : "";
     setText(card.note, note);
     card.note.hidden = note === "" || state === "fresh" || state === "simulated";
@@ -112,6 +112,12 @@ export class Robots {
     card.names = text;
     short_labels(names).forEach((label, i) => setText(card.rows.get(names[i]).name, label));
   }
+}
+
+// Steps beyond its limits, for which the robot stood.
+function refusals_of(robot) {
+  const count = robot.refused_setpoints ?? 0;
+  return count > 0 ? `${count} ${count === 1 ? "step" : "steps"} refused` : "";
 }
 
 function make_joint(joint) {
