@@ -3,6 +3,7 @@
 A test module is a unittest module that runs as `python3 module.py`; programs are found in $CELLMIRROR_BIN_DIR.
 """
 
+import contextlib
 import json
 import os
 import pathlib
@@ -24,6 +25,21 @@ CELLS = SOURCE / "config" / "cells"
 STEP_S = 0.02  # between two steps of a test: nobody who starts the program for each is faster
 # For what comes, however busy the machine is: it may be five times slower, and stand still for a second or two.
 PATIENCE_S = 60
+
+
+@contextlib.contextmanager
+def sub_test(case, **parameters):
+    """case.subTest(), which also runs at its end what was added as a cleanup inside, so that a failed sub-test leaves no
+    gateway in the way of the next one."""
+    outer, case._cleanups = case._cleanups, []
+    try:
+        with case.subTest(**parameters):
+            try:
+                yield
+            finally:
+                case.doCleanups()
+    finally:
+        case._cleanups = outer
 
 
 def eventually(condition, timeout=PATIENCE_S, every=0.05):

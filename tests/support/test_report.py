@@ -83,10 +83,24 @@ def count_unittest(output: str, report: Report) -> bool:
         report.skip(name, reason_of(reason))
     for number in range(len(reasons), counts.get("skipped", 0)):
         report.skip(f"case {number + 1}", "its reason shows with unittest's verbosity 2")
-    for name in re.findall(r"^(?:FAIL|ERROR): (\w+) ", output, re.MULTILINE):
-        report.fail(name, tail(output, 80))
-    report.passed += max(0, int(ran[1]) - sum(counts.values()))
+    failed = failures_of(output)
+    for name, detail in failed:
+        report.fail(name, detail)
+    tests = {name.split(" ")[0] for name, _ in failed}
+    report.passed += max(0, int(ran[1]) - len(tests) - counts.get("skipped", 0))
     return True
+
+
+def failures_of(output: str) -> list[tuple[str, str]]:
+    """Name and traceback of each failed case or sub-test that unittest printed; 'setUpClass' and the like are cases."""
+    rule, line = "=" * 70, "-" * 70
+    found = []
+    for block in output.split(rule + "\n")[1:]:
+        head = re.match(r"(?:FAIL|ERROR): (\w+)(?: \([^)]*\))?(.*)\n", block)
+        if head:
+            text = block.split("\n" + line + "\nRan ")[0].replace(line + "\n", "")
+            found.append((" ".join([head[1], head[2].strip()]).strip(), tail(text, 40)))
+    return found
 
 
 def add_test(test: ElementTree.Element, reports: Path, total: Report) -> None:

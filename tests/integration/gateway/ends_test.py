@@ -57,7 +57,8 @@ class Ends(unittest.TestCase):
         self.key = self.scratch.status()["haptics"]["tcp_force"]["key"]
         memory = h.attach(self.key, memory_of.TCP_FORCE_BYTES)
         self.addCleanup(memory.detach)
-        shown = g.eventually(lambda: memory_of.read_tcp_force(memory)["values"] == list(TEST_FORCE))
+        # None: it was being written.
+        shown = g.eventually(lambda: (memory_of.read_tcp_force(memory) or {}).get("values") == list(TEST_FORCE))
         self.assertTrue(shown, memory_of.read_tcp_force(memory))
         return gateway, memory
 
@@ -78,7 +79,7 @@ class Signals(Ends):
     def test_every_signal_that_ends_a_process_ends_it_in_order(self):
         before = all_objects()
         for number in ORDINARY + OTHERS:
-            with self.subTest(signal=number):
+            with g.sub_test(self, signal=number):
                 gateway, memory = self.start()
                 gateway.child.send_signal(number)
                 status = gateway.child.wait(60)
