@@ -16,7 +16,7 @@ function version() {
 
 async function modules() {
   try {
-    return await Promise.all(["node-opcua", "./certificates.mjs", "./server.mjs", "./node_factory.mjs", "./cell_nodes.mjs", "./feed.mjs", "./nameplates.mjs"].map((name) => import(name)));
+    return await Promise.all(["node-opcua", "./certificates.mjs", "./server.mjs", "./node_factory.mjs", "./cell_nodes.mjs", "./feed.mjs", "./nameplates.mjs", "./session_room.mjs"].map((name) => import(name)));
   } catch (error) {
     if (error.code === "ERR_MODULE_NOT_FOUND" && /node-opcua/.test(error.message)) throw new Refusal("the npm package node-opcua is not installed", "run npm ci --omit=dev in the program's folder");
     throw error;
@@ -46,11 +46,12 @@ function tidier(options, forget) {
 
 // The server with the nodes of all cells, not listening yet, and what feeds them.
 async function made(options) {
-  const [{default: opcua}, {certificate_manager, forget_unasked}, {make_server}, {NodeFactory}, {CellNodes}, {Feed}, {read_nameplates}] = await modules();
+  const [{default: opcua}, {certificate_manager, forget_unasked}, {kLimits, make_server}, {NodeFactory}, {CellNodes}, {Feed}, {read_nameplates}, {keep_room}] = await modules();
   opcua.setLogLevel(opcua.LogLevel.Error);
   const nameplates = options.nameplates ? read_nameplates(options.nameplates) : new Map();
   const certificates = await certificate_manager(options.state, options.loopback);
   const server = await make_server(options, certificates, version());
+  keep_room(server, kLimits.sessions, say);
   const factory = new NodeFactory(server.engine.addressSpace);
   const feeds = options.instances.map((instance) => new Feed({instance, period_ms: options.period_ms, cell: new CellNodes(factory, instance, nameplates, Date.now()), say}));
   return {server, feeds, tidy: tidier(options, () => forget_unasked(certificates, options.state, options.loopback))};

@@ -3,6 +3,7 @@
 //   node client.mjs session URL MODE POLICY FOLDER    whether a session can be made; FOLDER: for the client's certificate
 //   node client.mjs browse URL                  every node below the devices, with its references, attributes and value
 //   node client.mjs write URL                   tries to write every variable and to call what can be called
+//   node client.mjs abandon URL COUNT           activates sessions, each of a client of its own, and ends without closing them
 //   node client.mjs watch URL ID...             a line for each notification of these variables, until it is ended
 import opcua from "node-opcua";
 
@@ -107,6 +108,15 @@ async function watch(session) {
   await new Promise((resolve) => process.on("SIGTERM", resolve));
 }
 
+async function abandon(count) {
+  for (let made = 0; made < count; ++made) {
+    const client = OPCUAClient.create({endpointMustExist: false, requestedSessionTimeout: 3_000_000, keepSessionAlive: false, connectionStrategy: {maxRetry: 0}});
+    await client.connect(url);
+    await client.createSession();
+  }
+  return {made: count};
+}
+
 async function session_by(mode, policy, folder) {
   const certificates = new OPCUACertificateManager({rootFolder: folder, automaticallyAcceptUnknownCertificate: true, keySize: 2048});
   await certificates.initialize();
@@ -128,6 +138,7 @@ async function endpoints() {
 
 if (what === "endpoints") await say(await endpoints());
 else if (what === "session") await say(await session_by(...more));
+else if (what === "abandon") await say(await abandon(Number(more[0])));
 else if (what === "browse") await say(await with_session({}, all_nodes));
 else if (what === "write") await say(await with_session({}, write_all));
 else await with_session({}, watch);

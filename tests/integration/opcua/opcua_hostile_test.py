@@ -86,6 +86,13 @@ class Hostile(unittest.TestCase):
         self.assertTrue(g.eventually(lambda: self.gateway.requests > 30))
         self.assertLess(resident_mb(bridge), 400)
 
+    def test_abandoned_sessions_lock_nobody_out(self):
+        bridge = self.started(lambda: s.status([s.robot("R")]))
+        bridge.wait_for("answers")
+        self.assertEqual(bridge.ask("abandon", 25), {"made": 25})
+        self.assertEqual(len(self.devices(bridge)), 1)
+        self.assertIn("that was silent for the longest time is closed", bridge.output())
+
     def test_bytes_that_are_no_message(self):
         bridge = self.started(lambda: s.status([s.robot("R")]))
         bridge.wait_for("answers")
