@@ -15,6 +15,7 @@
 #include "config/msh/msh_file.hpp"
 #include "config/node_numbers.hpp"
 #include "config/parse.hpp"
+#include "config/sparkplug_names.hpp"
 #include "config/tissue_object.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -125,6 +126,7 @@ std::optional<LoadedCell> load_cell(const fs::path& given, Diagnostics& diagnost
   collision::Settings collision;
   if (cell) collision = reader.collision.settings(*cell, reader.findings);
   if (cell) reader.io.complete(*cell, reader.findings);
+  if (cell) check_sparkplug_names(*cell, reader.mqtt, whole_file, reader.findings);
   TissueSetup tissue;
   if (cell) tissue = reader.tissue.setup(*cell, reader.findings);
   reader.findings.take(of_streams);

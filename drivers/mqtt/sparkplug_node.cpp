@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "drivers/mqtt/topics.hpp"
+#include "rt_core/base/text.hpp"
 #include "rt_core/base/utf8.hpp"
 #include "rt_core/ports/words.hpp"
 
@@ -32,6 +33,29 @@ std::string joined(const std::vector<std::string>& texts) {
   std::string out;
   for (const std::string& one : texts | std::views::take(kMostSummaryReasons))
     out += (out.empty() ? "" : "; ") + cut_text(one);
+  return out;
+}
+
+// The robots that are devices. Hosts compare device ids without regard to case (specification 3.0.0, 4.1), so only the
+// first of several that differ by case can be one; robots loaded by SCRIPT are not checked by the cell file.
+struct Chosen {
+  std::vector<const RobotSummary*> devices;
+  std::vector<std::string> left_out;  // for people
+};
+
+Chosen choose_devices(const CellSummary& summary) {
+  Chosen out;
+  std::map<std::string, std::string> seen;
+  for (const RobotSummary& robot : summary.robots | std::views::take(kMostSummaryRobots)) {
+    const auto [first, is_new] = seen.emplace(lower_case(robot.id), robot.id);
+    if (is_new) {
+      out.devices.push_back(&robot);
+    } else {
+      out.left_out.push_back(
+          fmt::format("the robot {} is not sent by Sparkplug: its id differs from {} by case only; rename one of them",
+                      robot.id, first->second));
+    }
+  }
   return out;
 }
 
@@ -82,7 +106,10 @@ SparkplugNode::SparkplugNode(const SparkplugConfig& config, const Identity& iden
 void SparkplugNode::see(const CellSummary& summary) {
   using enum SparkplugType;
   node_.set("Health", text, std::string(word(summary.health)));
-  node_.set("Reasons", text, joined(summary.reasons));
+  const Chosen chosen = choose_devices(summary);
+  std::vector<std::string> reasons = chosen.left_out;
+  reasons.insert(reasons.end(), summary.reasons.begin(), summary.reasons.end());
+  node_.set("Reasons", text, joined(reasons));
   node_.set("Loop/On Time", boolean, summary.loop.on_time);
   node_.set("Loop/Missed", int64, count(summary.loop.missed));
   node_.set("Loop/Faults", int64, count(summary.loop.faults));
@@ -92,16 +119,16 @@ void SparkplugNode::see(const CellSummary& summary) {
   node_.set("Alarms/Active", int64, count(summary.alarms.active));
   node_.set("Alarms/Unacknowledged", int64, count(summary.alarms.unacknowledged));
   for (auto& [name, device] : devices_)
-    device.gone = std::ranges::find(summary.robots, name, &RobotSummary::id) == summary.robots.end();
+    device.gone = std::ranges::none_of(chosen.devices, [&](const RobotSummary* robot) { return robot->id == name; });
   std::erase_if(devices_, [](const auto& entry) { return entry.second.gone && !entry.second.told; });
-  for (const RobotSummary& robot : summary.robots | std::views::take(kMostSummaryRobots)) {
-    Device& device = devices_[robot.id];
+  for (const RobotSummary* robot : chosen.devices) {
+    Device& device = devices_[robot->id];
     device.gone = false;
-    device.has_stream = device.has_stream || robot.mirrored;
-    device.is_connected = has_current_values(robot, device.has_stream);
-    device.metrics.set("Mirrored", boolean, robot.mirrored);
-    device.metrics.set("Data State", text, std::string(word(robot.state)));
-    device.metrics.set("Data Age", float64, number(robot.age_s));
+    device.has_stream = device.has_stream || robot->mirrored;
+    device.is_connected = has_current_values(*robot, device.has_stream);
+    device.metrics.set("Mirrored", boolean, robot->mirrored);
+    device.metrics.set("Data State", text, std::string(word(robot->state)));
+    device.metrics.set("Data Age", float64, number(robot->age_s));
   }
 }
 
@@ -180,15 +207,22 @@ std::optional<Outgoing> SparkplugNode::next_of(const std::string& name, Device& 
   return std::nullopt;
 }
 
-// In turn, so that none waits for ever behind others that change all the time.
+// In turn, so that none waits for ever behind others that change all the time. Devices that are gone come first: the id
+// of a new one may differ from theirs by case only, and a host would take their DDEATH for its own.
 std::optional<Outgoing> SparkplugNode::next_of_devices(std::int64_t time_ms) {
+  const auto gone = std::ranges::find_if(devices_, [](const auto& entry) { return entry.second.gone; });
+  if (gone != devices_.end()) {
+    auto death = next_of(gone->first, gone->second, time_ms);
+    devices_.erase(gone);
+    if (death) return death;
+    return next_of_devices(time_ms);
+  }
   auto at = devices_.upper_bound(last_device_);
   for (std::size_t looked = 0; looked < devices_.size(); ++looked, ++at) {
     if (at == devices_.end()) at = devices_.begin();
     auto out = next_of(at->first, at->second, time_ms);
     if (!out) continue;
     last_device_ = at->first;
-    if (at->second.gone) devices_.erase(at);
     return out;
   }
   return std::nullopt;

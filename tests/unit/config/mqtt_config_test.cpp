@@ -7,6 +7,7 @@
 
 #include "config/cell_file.hpp"
 #include "tests/unit/config/temporary_home.hpp"
+#include "tests/unit/config/two_joint_arm.hpp"
 
 namespace cellmirror {
 namespace {
@@ -87,6 +88,33 @@ TEST_F(MqttConfigTest, NamesCannotChangeTheTopics) {
   EXPECT_THAT(refusal("broker = \"localhost\"\nsparkplug = { group = \"a\" }"), HasSubstr("edge_node"));
   EXPECT_EQ(accepted("broker = \"localhost\"\nsparkplug = { group = \"a\", edge_node = \"n\" }").sparkplug->edge_node,
             "n");
+}
+
+// Hosts of Sparkplug may compare ids and names of metrics without regard to case.
+TEST_F(MqttConfigTest, SparkplugNeedsNamesThatDifferByMoreThanCase) {
+  std::string arm(kTwoJointArm);
+  home.write("envlib/a.mpc", arm);
+  arm.replace(arm.find("ARM"), 3, "Arm");
+  home.write("envlib/b.mpc", arm);
+  const std::string robots =
+      "[[node]]\nname = \"A\"\nabstract = \"a.mpc\"\n[[node]]\nname = \"B\"\nabstract = \"b.mpc\"\n";
+  const std::string mqtt = "broker = \"localhost\"\n";
+  const std::string sparkplug = "sparkplug = { group = \"g\", edge_node = \"n\" }\n";
+  accepted(mqtt + robots);
+  const std::string text = refusal(mqtt + sparkplug + robots);
+  EXPECT_THAT(text, HasSubstr("the robots ARM and Arm differ by case only"));
+  EXPECT_THAT(text, HasSubstr("rename one of them"));
+  accepted(mqtt + "enabled = false\n" + sparkplug + robots);
+}
+
+TEST_F(MqttConfigTest, SparkplugNeedsJointsThatDifferByMoreThanCaseWhereTheyAreSent) {
+  std::string arm(kTwoJointArm);
+  for (std::size_t at; (at = arm.find("J_1")) != std::string::npos;) arm.replace(at, 3, "j_2");
+  home.write("envlib/a.mpc", arm);
+  const std::string robots = "[[node]]\nname = \"A\"\nabstract = \"a.mpc\"\n";
+  const std::string keys = "broker = \"localhost\"\nsparkplug = { group = \"g\", edge_node = \"n\" }\n";
+  accepted(keys + robots);
+  EXPECT_THAT(refusal(keys + "joint_states_hz = 5\n" + robots), HasSubstr("the joints j_2 and J_2 of ARM differ"));
 }
 
 }  // namespace

@@ -102,6 +102,20 @@ TEST_F(Node, IsBornWithItsDevicesAndThenTellsChanges) {
   EXPECT_EQ(numbers_, (std::vector<unsigned>{0, 1, 2, 3, 4, 5, 6, 7}));
 }
 
+TEST_F(Node, LeavesOutARobotWhoseIdDiffersByCaseOnlyAndSaysSo) {
+  node_.see(summary_with({"ARM", "arm", "R2"}));
+  static_cast<void>(node_.begin_session(1));
+  node_.bear_again();
+  const std::optional<Outgoing> birth = node_.next(7);
+  ASSERT_TRUE(birth);
+  EXPECT_NE(birth->payload.find("arm is not sent by Sparkplug: its id differs from ARM by case only; rename"),
+            std::string::npos);
+  EXPECT_EQ(topics(), (std::vector<std::string>{"spBv1.0/hall/DBIRTH/n1/ARM", "spBv1.0/hall/DBIRTH/n1/R2"}));
+  node_.see(summary_with({"arm", "R2"}));
+  EXPECT_EQ(topics(), (std::vector<std::string>{"spBv1.0/hall/NDATA/n1", "spBv1.0/hall/DDEATH/n1/ARM",
+                                                "spBv1.0/hall/DBIRTH/n1/arm"}));
+}
+
 TEST_F(Node, NumbersRunTo255AndEachSessionHasTheNextOne) {
   node_.see(summary_with({"R1"}));
   static_cast<void>(node_.begin_session(1));
