@@ -54,6 +54,10 @@ std::string why_no_index(const Result<Summary>& summary) {
   if (summary->statistics->messages > 0 && summary->chunks.empty()) return "its messages are in no chunks";
   if (summary->catalogue.channels.size() < summary->statistics->channel_messages.size())
     return "the summary does not name all channels";
+  if (std::ranges::any_of(summary->catalogue.channels, [&](const auto& entry) {
+        return entry.second.schema != 0 && summary->catalogue.schema_of(entry.second) == nullptr;
+      }))
+    return "the summary does not repeat all schemas";
   if (summary->attachments.size() < summary->statistics->attachments)
     return "the summary does not list all attachments";
   if (summary->metadata.size() < summary->statistics->metadata) return "the summary does not list all metadata";
@@ -95,6 +99,8 @@ Result<Reader> Reader::open(const Source& source, const Limits& limits) {
   Indexer indexer;
   auto scanned = scan(source, limits, indexer);
   if (!scanned) return std::unexpected(scanned.error());
+  if (scanned->recordings > 1)
+    out.why_not_ = fmt::format("the file holds {} recordings, one behind the other", scanned->recordings);
   out.header_ = std::move(scanned->header);
   out.catalogue_ = std::move(scanned->catalogue);
   out.statistics_ = std::move(scanned->statistics);

@@ -54,6 +54,8 @@ class RecordStream {
   Result<std::optional<RecordView>> next();
   // Where the next record begins, or the one that cannot be read.
   [[nodiscard]] std::uint64_t offset() const { return offset_; }
+  // The next record begins at `offset`.
+  void seek(std::uint64_t offset) { offset_ = offset; }
 
  private:
   // `size` bytes at offset_; they are there.

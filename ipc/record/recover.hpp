@@ -17,7 +17,8 @@ struct RecoverReport {
   bool was_whole = false;         // there was nothing to repair
 };
 
-// Ids of schemas and channels, sequences and times stay as they were; chunks are made again. Fails where `source` is no
+// Sequences and times stay as they were, and ids of schemas and channels except where joined recordings disagree; chunks
+// are made again. Fails where `source` is no
 // MCAP file, or the new file cannot be written.
 [[nodiscard]] Result<RecoverReport> recover(const Source& source, Sink& out, Compression compression,
                                             const Limits& limits = {});

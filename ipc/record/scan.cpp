@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "ipc/record/decode.hpp"
+#include "ipc/record/joined_ids.hpp"
+#include "ipc/record/record_finder.hpp"
 #include "ipc/record/summary.hpp"
 
 namespace cellmirror::mcap {
@@ -60,20 +62,34 @@ namespace {
 class Scanner {
  public:
   Scanner(const Source& source, const Limits& limits, Visitor& visitor)
-      : source_(source), limits_(limits), visitor_(visitor), opener_(limits, source.size()) {}
+      : source_(source),
+        limits_(limits),
+        visitor_(visitor),
+        opener_(limits, source.size()),
+        stream_(source, kMagic.size(), source.size(), limits),
+        finder_(source, limits) {}
 
   Result<ScanReport> run();
 
  private:
-  // Up to the end of the data or what cannot be read; true where it came to the end.
-  bool run_from(std::uint64_t offset);
-  // The first chunk behind `offset` that the summary knows.
-  std::optional<std::uint64_t> chunk_behind(std::uint64_t offset);
+  // Up to the end of the last recording or to the first byte that is not a record; true at the end.
+  bool run_records();
+  // Goes on at what was found; false where nothing was found.
+  bool go_on_at(const std::optional<FoundRecord>& found);
+  // Goes on within the record that was taken last where its length cannot be trusted.
+  void look_into_suspect(const RecordView& record);
+  // Schemas and channels of the summary, because those of the data may be in the damage.
+  void take_catalogue_of_summary();
+  void begin_recording(std::uint64_t offset);
+  // True where no other recording follows.
+  bool end_recording(const RecordView& data_end);
+  // Behind the footer and the magic of the recording; none where they are not there.
+  std::optional<std::uint64_t> end_of_summary(const RecordView& data_end);
   void take(const RecordView& record);
   void take_chunk(const RecordView& record);
   // Handles a chunk beyond the limit of decompressed bytes.
   void refuse_or_leave_out(const Chunk& chunk, const RecordView& record, const Error& why);
-  void take_message(const Message& message, std::uint64_t offset);
+  void take_message(Message message, std::uint64_t offset);
   // Of the data section or a chunk; false: it is none of these kinds.
   bool take_inner(const RecordView& record, std::uint64_t offset);
   void look_at_end(std::uint64_t offset);
@@ -89,18 +105,27 @@ class Scanner {
   Visitor& visitor_;
   ChunkOpener opener_;
   ScanReport out_;
-  std::optional<std::vector<std::uint64_t>> known_chunks_;
+  RecordStream stream_;
+  RecordFinder finder_;
+  JoinedIds ids_;
+  enum class Suspect : std::uint8_t { nothing, record, joined_recording };
+  Suspect suspect_ = Suspect::nothing;  // what may begin within the record that was taken last
+  std::uint64_t suspect_bytes_ = 0;
+  bool summary_taken_ = false;
   std::uint64_t last_time_ = 0;
   bool in_chunk_ = false;
   std::set<std::uint16_t> chunk_channels_;
   bool has_header_ = false;
+  bool joined_ = false;           // in another recording than the first
   std::optional<Error> refused_;  // set: the scan ends with this error
 };
 
-void Scanner::take_message(const Message& message, std::uint64_t offset) {
-  const auto channel = out_.catalogue.channels.find(message.channel);
+void Scanner::take_message(Message message, std::uint64_t offset) {
+  const auto id = ids_.channel(message.channel);
+  const auto channel = id ? out_.catalogue.channels.find(*id) : out_.catalogue.channels.end();
   if (channel == out_.catalogue.channels.end())
     return fault(offset, "a message of the channel {}, which is not described", message.channel);
+  message.channel = *id;
   if (message.log_time < last_time_) ++out_.out_of_order;
   last_time_ = message.log_time;
   if (in_chunk_) {
@@ -115,8 +140,9 @@ void Scanner::take_message(const Message& message, std::uint64_t offset) {
 
 bool Scanner::take_inner(const RecordView& record, std::uint64_t offset) {
   if (record.is(Opcode::schema)) {
-    const auto schema = decode_schema(record.content);
-    const std::string wrong = schema ? out_.catalogue.add(*schema) : "a schema that is cut off, or has the id 0";
+    auto schema = decode_schema(record.content);
+    if (!schema) suspect_ = Suspect::record;
+    const std::string wrong = schema ? ids_.add(*schema, out_.catalogue) : "a schema that is cut off, or has the id 0";
     if (!wrong.empty()) {
       fault(offset, "{}", wrong);
     } else {
@@ -125,8 +151,9 @@ bool Scanner::take_inner(const RecordView& record, std::uint64_t offset) {
     return true;
   }
   if (record.is(Opcode::channel)) {
-    const auto channel = decode_channel(record.content);
-    const std::string wrong = channel ? out_.catalogue.add(*channel) : "a channel that is cut off";
+    auto channel = decode_channel(record.content);
+    if (!channel) suspect_ = Suspect::record;
+    const std::string wrong = channel ? ids_.add(*channel, out_.catalogue) : "a channel that is cut off";
     if (!wrong.empty()) {
       fault(offset, "{}", wrong);
     } else {
@@ -138,6 +165,7 @@ bool Scanner::take_inner(const RecordView& record, std::uint64_t offset) {
     if (const auto message = decode_message(record.content)) {
       take_message(*message, offset);
     } else {
+      suspect_ = Suspect::record;
       fault(offset, "a message that is cut off");
     }
     return true;
@@ -172,12 +200,15 @@ void Scanner::take_chunk(const RecordView& record) {
   const auto chunk = decode_chunk(record.content);
   if (!chunk) {
     ++out_.chunks_lost;
+    suspect_ = Suspect::record;
     return fault(record.offset, "a chunk that is cut off");
   }
   const auto content = opener_.open(*chunk);
   if (!content) {
     if (opener_.exhausted()) return refuse_or_leave_out(*chunk, record, content.error());
     ++out_.chunks_lost;
+    // The chunk of a recording that was cut off reaches into the recording that was joined to it.
+    suspect_ = Suspect::joined_recording;
     return fault(record.offset, "{}", content.error().what);
   }
   in_chunk_ = true;
@@ -189,6 +220,7 @@ void Scanner::take_chunk(const RecordView& record) {
   }
   if (!records.ok()) fault(record.offset, "the chunk has no whole record at its byte {}", records.offset());
   in_chunk_ = false;
+  suspect_ = Suspect::nothing;  // the length of the chunk is right, whatever is in it
   ChunkIndex index = index_of(*chunk, record);
   for (const std::uint16_t channel : chunk_channels_) index.message_index_offsets[channel] = 0;
   out_.chunks.push_back(std::move(index));
@@ -196,12 +228,15 @@ void Scanner::take_chunk(const RecordView& record) {
 }
 
 void Scanner::take(const RecordView& record) {
+  // Nothing but its length tells where such a record ends: cut off, it reaches into the recording that was joined to
+  // it.
+  if (!record.is(Opcode::attachment) && !record.is(Opcode::message)) suspect_ = Suspect::joined_recording;
   if (take_inner(record, record.offset)) return;
   if (record.is(Opcode::chunk)) return take_chunk(record);
   if (record.is(Opcode::header)) {
     auto header = decode_header(record.content);
     if (header && !has_header_) {
-      out_.header = *std::move(header);
+      if (!joined_) out_.header = *std::move(header);
     } else {
       fault(record.offset, "a header that is wrong or not the first");
     }
@@ -209,50 +244,109 @@ void Scanner::take(const RecordView& record) {
   } else if (record.is(Opcode::attachment)) {
     bool crc_ok = false;
     const auto attachment = decode_attachment(record.content, crc_ok);
+    if (!attachment) suspect_ = Suspect::record;
     if (!attachment || !crc_ok) return fault(record.offset, "an attachment that is cut off, or has a wrong CRC");
     ++out_.statistics.attachments;
     visitor_.on_attachment(*attachment, record);
   } else if (record.is(Opcode::metadata)) {
     const auto metadata = decode_metadata(record.content);
+    if (!metadata) suspect_ = Suspect::record;
     if (!metadata) return fault(record.offset, "metadata that are cut off");
     ++out_.statistics.metadata;
     visitor_.on_metadata(*metadata, record);
   }
 }
 
-std::optional<std::uint64_t> Scanner::chunk_behind(std::uint64_t offset) {
-  if (!known_chunks_) {
-    known_chunks_.emplace();
-    if (const auto summary = read_summary(source_, limits_)) {
-      for (const ChunkIndex& chunk : summary->chunks) known_chunks_->push_back(chunk.offset);
-      std::ranges::sort(*known_chunks_);
-    }
+bool Scanner::go_on_at(const std::optional<FoundRecord>& found) {
+  if (!found) return false;
+  if (found->begins_recording) {
+    begin_recording(found->offset);
+  } else {
+    take_catalogue_of_summary();
+    stream_.seek(found->offset);
   }
-  const auto found = std::ranges::upper_bound(*known_chunks_, offset);
-  if (found == known_chunks_->end() || *found >= source_.size()) return std::nullopt;
-  return *found;
+  out_.whole_until = stream_.offset();
+  return true;
 }
 
-bool Scanner::run_from(std::uint64_t offset) {
-  RecordStream stream(source_, offset, source_.size(), limits_);
+void Scanner::look_into_suspect(const RecordView& record) {
+  const Suspect suspect = std::exchange(suspect_, Suspect::nothing);
+  if (suspect == Suspect::nothing) return;
+  // Records that overlap, made on purpose, would take a time that grows with the square of the size.
+  constexpr std::uint64_t kMostPasses = 4;
+  suspect_bytes_ += record.end() - record.offset;
+  if (suspect_bytes_ / kMostPasses > source_.size()) return;
+  const std::uint64_t from = record.offset + 1;
+  const std::uint64_t to = record.end();
+  go_on_at(suspect == Suspect::record ? finder_.next(from, to) : finder_.next_recording(from, to));
+}
+
+void Scanner::take_catalogue_of_summary() {
+  if (std::exchange(summary_taken_, true)) return;
+  auto summary = read_summary(source_, limits_);
+  if (!summary) return;
+  for (auto& [id, schema] : summary->catalogue.schemas) {
+    if (ids_.add(schema, out_.catalogue).empty()) visitor_.on_schema(schema);
+  }
+  for (auto& [id, channel] : summary->catalogue.channels) {
+    if (ids_.add(channel, out_.catalogue).empty()) visitor_.on_channel(channel);
+  }
+}
+
+void Scanner::begin_recording(std::uint64_t offset) {
+  fault(offset, "another recording begins here: files were joined");
+  ++out_.recordings;
+  out_.chunks_have_all = false;  // their channels may have other ids than in the catalogue
+  ids_.begin_recording();
+  has_header_ = false;
+  joined_ = true;
+  summary_taken_ = true;
+  stream_.seek(offset + kMagic.size());
+}
+
+std::optional<std::uint64_t> Scanner::end_of_summary(const RecordView& data_end) {
+  bool footer = data_end.is(Opcode::footer);
+  while (!footer) {
+    const auto record = stream_.next();
+    if (!record || !*record) return std::nullopt;
+    footer = (*record)->is(Opcode::footer);
+  }
+  std::array<std::byte, kMagic.size()> magic;
+  const std::uint64_t at = stream_.offset();
+  if (source_.size() - at < magic.size() || !source_.read(at, magic) ||
+      !std::ranges::equal(magic, std::as_bytes(std::span(kMagic))))
+    return std::nullopt;
+  return at + magic.size();
+}
+
+bool Scanner::end_recording(const RecordView& data_end) {
+  const std::uint64_t offset = data_end.offset;
+  const auto end = end_of_summary(data_end);
+  if (end != source_.size() && go_on_at(finder_.next_recording(end.value_or(stream_.offset()), source_.size())))
+    return false;
+  look_at_end(offset);
+  return true;
+}
+
+bool Scanner::run_records() {
   for (;;) {
-    const auto record = stream.next();
+    const auto record = stream_.next();
     if (!record) {
       // "at byte N: ..." is the stream's way to say it to those who have nothing else.
       const std::string& what = record.error().what;
       const std::size_t colon = what.starts_with("at byte") ? what.find(": ") : std::string::npos;
-      fault(stream.offset(), "{}", colon == std::string::npos ? what : what.substr(colon + 2));
+      fault(stream_.offset(), "{}", colon == std::string::npos ? what : what.substr(colon + 2));
       return false;
     }
     if (!*record) {
-      fault(stream.offset(), "the file ends without an end of its data");
+      fault(stream_.offset(), "the file ends without an end of its data");
       return true;
     }
     if ((*record)->is(Opcode::data_end) || (*record)->is(Opcode::footer)) {
       if (!decode_data_end((*record)->content)) fault((*record)->offset, "an end of data that is cut off");
       out_.whole_until = (*record)->end();
-      look_at_end((*record)->offset);
-      return true;
+      if (end_recording(**record)) return true;
+      continue;
     }
     take(**record);
     if (refused_) return true;
@@ -262,6 +356,7 @@ bool Scanner::run_from(std::uint64_t offset) {
       has_header_ = true;
     }
     out_.whole_until = (*record)->end();
+    look_into_suspect(**record);
   }
 }
 
@@ -279,14 +374,11 @@ Result<ScanReport> Scanner::run() {
       !std::ranges::equal(begin, std::as_bytes(std::span(kMagic))))
     return fail("at byte 0: this is no MCAP file of version 0: its first bytes are others",
                 "name a file that cellmirror record or another MCAP writer has made");
-  std::uint64_t from = begin.size();
-  out_.whole_until = from;
+  out_.whole_until = begin.size();
   // Ends: each round begins behind the one before.
-  while (!run_from(from)) {
-    const auto next = chunk_behind(out_.whole_until);
-    if (!next) break;
-    from = *next;
-    out_.whole_until = from;
+  while (!run_records()) {
+    // At the byte itself: it may be the magic of a recording that was joined to one that was cut off.
+    if (!go_on_at(finder_.next(stream_.offset(), source_.size()))) break;
   }
   if (refused_) return std::unexpected(*refused_);
   out_.statistics.schemas = static_cast<std::uint16_t>(out_.catalogue.schemas.size());

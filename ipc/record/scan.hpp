@@ -71,6 +71,7 @@ struct ScanReport {
   bool chunks_have_all = true;     // every message that was passed on is in one of them, and nothing in these is wrong
   std::uint64_t messages_outside = 0;  // of no chunk
   std::uint64_t out_of_order = 0;      // messages with a log time before that of the message before
+  std::uint64_t recordings = 1;        // more where files were joined; ids of the later ones are mapped
   std::uint64_t chunks_lost = 0;
   std::uint64_t chunks_left_out = 0;  // Limits::leave_out_beyond
   std::uint64_t whole_until = 0;      // the end of the last whole record that was read in order

@@ -30,7 +30,10 @@ bool take_record(const RecordView& record, Summary& out) {
     }
     case Opcode::channel: {
       auto channel = decode_channel(record.content);
-      return channel && out.catalogue.add(*std::move(channel)).empty();
+      if (!channel) return false;
+      // A summary may repeat channels without their schemas, or schemas behind them.
+      const auto [known, is_new] = out.catalogue.channels.try_emplace(channel->id, *channel);
+      return is_new || known->second == *channel;
     }
     case Opcode::statistics:
       out.statistics = decode_statistics(record.content);
