@@ -17,9 +17,8 @@ struct RecoverReport {
   bool was_whole = false;         // there was nothing to repair
 };
 
-// Sequences and times stay as they were, and ids of schemas and channels except where joined recordings disagree; chunks
-// are made again. Fails where `source` is no
-// MCAP file, or the new file cannot be written.
+// Sequences and times stay as they were; chunks are made again. Ids of schemas and channels stay too, except where
+// joined recordings disagree on them. Fails where `source` is no MCAP file, or the new file cannot be written.
 [[nodiscard]] Result<RecoverReport> recover(const Source& source, Sink& out, Compression compression,
                                             const Limits& limits = {});
 
