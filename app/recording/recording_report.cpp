@@ -121,6 +121,11 @@ json cell_json(const mcap::Reader& reader) {
 
 }  // namespace
 
+std::string recover_command(const std::string& file) {
+  const std::string_view stem = std::string_view(file).substr(0, file.size() - (file.ends_with(".mcap") ? 5 : 0));
+  return fmt::format("cellmirror recording recover {} -o {}-repaired.mcap", file, stem);
+}
+
 std::string recording_info_text(const std::string& file, std::uint64_t bytes, const mcap::Reader& reader) {
   const mcap::Statistics& statistics = reader.statistics();
   const double duration = duration_s(statistics);
@@ -132,8 +137,8 @@ std::string recording_info_text(const std::string& file, std::uint64_t bytes, co
     for (const auto& [key, value] : gateway->values) out += fmt::format("  {}: {}\n", printable(key), printable(value));
   }
   if (!reader.indexed())
-    out +=
-        fmt::format("no summary is used: {}; repair it with: cellmirror recording recover\n", reader.why_not_indexed());
+    out += fmt::format("no summary is used: {}; write a file with one: {}\n", reader.why_not_indexed(),
+                       recover_command(file));
   if (reader.chunks_left_out() > 0) {
     out += fmt::format(
         "{} of {} chunks are not counted: all chunks together have {:.1f} GB decompressed; if you trust the origin of "

@@ -13,6 +13,9 @@ namespace cellmirror::app {
 [[nodiscard]] std::string recording_info_text(const std::string& file, std::uint64_t bytes, const mcap::Reader& reader);
 [[nodiscard]] std::string recording_info_json(const std::string& file, std::uint64_t bytes, const mcap::Reader& reader);
 
+// The command that repairs `file`, as a user can enter it.
+[[nodiscard]] std::string recover_command(const std::string& file);
+
 struct RecordingCheck {
   mcap::ScanReport scan;
   mcap::Faults summary_faults;  // where the summary differs from what is in the file

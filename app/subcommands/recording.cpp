@@ -76,7 +76,7 @@ int recording_check(const RecordingOptions& options) {
       status != kExitDone)
     return status;
   if (check->whole()) return kExitDone;
-  return refuse(options.file + " is not whole; repair it with: cellmirror recording recover");
+  return refuse(options.file + " is not whole; repair it with: " + recover_command(options.file));
 }
 
 int recording_recover(const RecordingOptions& options) {
