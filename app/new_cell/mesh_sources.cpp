@@ -57,16 +57,6 @@ bool is_companion(const fs::path& file) {
   return std::ranges::find(kKinds, lower_case(file.extension().string())) != kKinds.end();
 }
 
-// Whether the sources of a ROS package of this name hold the file: a workspace may be built of links to them.
-bool is_in_sources_of(const fs::path& file, const std::string& package) {
-  std::error_code error;
-  fs::path above = file.parent_path();
-  for (int i = 0; i < kHighest && above.has_relative_path(); ++i, above = above.parent_path()) {
-    if (above.filename() == package && fs::is_regular_file(above / "package.xml", error)) return true;
-  }
-  return false;
-}
-
 // A path in the URDF of characters that need no quoting in XML.
 std::string plain_path(const fs::path& path) {
   std::string out;
@@ -76,18 +66,40 @@ std::string plain_path(const fs::path& path) {
 
 }  // namespace
 
-MeshSources::MeshSources(const fs::path& urdf, std::string folder)
-    : urdf_folder_(urdf.parent_path()), folder_(std::move(folder)) {
-  roots_.push_back(urdf_folder_);
-  std::error_code error;
-  fs::path above = urdf_folder_;
-  for (int i = 0; i < kHighest && above.has_relative_path(); ++i, above = above.parent_path()) {
-    if (!fs::is_regular_file(above / "package.xml", error)) continue;
-    roots_.push_back(above);
-    break;
+MeshSources::MeshSources(const fs::path& urdf, std::string folder, const fs::path& named_folder)
+    : folder_(std::move(folder)) {
+  if (!named_folder.empty() && named_folder != urdf.parent_path()) urdf_folders_.push_back(named_folder);
+  urdf_folders_.push_back(urdf.parent_path());
+  for (const fs::path& start : urdf_folders_) {
+    roots_.push_back(start);
+    std::error_code error;
+    fs::path above = start;
+    for (int i = 0; i < kHighest && above.has_relative_path(); ++i, above = above.parent_path()) {
+      if (!fs::is_regular_file(above / "package.xml", error)) continue;
+      roots_.push_back(above);
+      break;
+    }
   }
   add_folders_of("AMENT_PREFIX_PATH", "share", packages_);
   add_folders_of("ROS_PACKAGE_PATH", "", packages_);
+}
+
+// A file in a known folder, or a link there: colcon build --symlink-install makes links to the sources.
+Result<fs::path> MeshSources::from_folders(const std::string& text) const {
+  bool is_there = false;
+  for (const fs::path& folder : urdf_folders_) {
+    std::error_code error;
+    const fs::path file = fs::canonical(folder / text, error);  // an absolute path stays as it is
+    if (error) continue;
+    is_there = true;
+    const fs::path written = (folder / text).lexically_normal();
+    const fs::path leads_to = fs::canonical(written, error);
+    if (allowed(file) || (!error && leads_to == file && allowed(written))) return file;
+  }
+  if (!is_there) return fail(fmt::format("there is no file {}", printable(text)), "put it beside the URDF");
+  return fail(fmt::format("the mesh {} lies outside of {} and of every known ROS package", printable(text),
+                          urdf_folders_.front().string()),
+              "put it beside the URDF");
 }
 
 bool MeshSources::allowed(const fs::path& file) const {
@@ -106,10 +118,12 @@ Result<MeshSources::Found> MeshSources::in_package(const std::string& name) cons
   if (!is_plain_name(package) || !stays_below(inside))
     return fail(fmt::format("{} names no file of a package", printable(name)));
   std::vector<fs::path> folders;
-  fs::path above = urdf_folder_;
-  for (int i = 0; i < kHighest && above.has_relative_path(); ++i, above = above.parent_path()) {
-    if (above.filename() == package) folders.push_back(above);
-    folders.push_back(above / package);
+  for (const fs::path& start : urdf_folders_) {
+    fs::path above = start;
+    for (int i = 0; i < kHighest && above.has_relative_path(); ++i, above = above.parent_path()) {
+      if (above.filename() == package) folders.push_back(above);
+      folders.push_back(above / package);
+    }
   }
   for (const fs::path& packages : packages_) {
     folders.push_back(packages / package);
@@ -120,7 +134,7 @@ Result<MeshSources::Found> MeshSources::in_package(const std::string& name) cons
     const fs::path root = fs::canonical(folder, error);
     if (error) continue;
     const fs::path file = fs::canonical(root / inside, error);
-    if (error || !(is_within(file, root) || allowed(file) || is_in_sources_of(file, package))) continue;
+    if (error) continue;  // `inside` stays below the package; a link there may lead to its sources
     return Found{file, "robots/" + package + "/" + plain_path(inside),
                  std::string(kPackage) + package + "/" + plain_path(inside)};
   }
@@ -135,14 +149,9 @@ Result<MeshSources::Found> MeshSources::as_path(const std::string& name) const {
   if (text.starts_with(kFile)) text.erase(0, kFile.size());
   if (text.find("://") != std::string::npos || text.empty())
     return fail(fmt::format("the mesh {} is not a file", printable(name)), "use a path relative to the URDF");
-  std::error_code error;
-  const fs::path file = fs::canonical(urdf_folder_ / text, error);  // an absolute path stays as it is
-  if (error) return fail(fmt::format("there is no file {}", printable(name)), "put it beside the URDF");
-  if (!allowed(file)) {
-    return fail(fmt::format("the mesh {} lies outside of {} and of every known ROS package", printable(name),
-                            urdf_folder_.string()),
-                "put it beside the URDF");
-  }
+  const auto found = from_folders(text);
+  if (!found) return std::unexpected(found.error());
+  const fs::path& file = *found;
   const fs::path inside = fs::path(text).is_relative() ? fs::path(text).lexically_normal() : fs::path();
   if (stays_below(inside) && plain_path(inside) == inside.string())
     return Found{file, folder_ + "/" + inside.string(), name};
@@ -197,7 +206,8 @@ void MeshSources::add_companions(const Found& mesh, std::vector<PlannedFile>& fi
       const std::string name = file.filename().string();
       if (text->find(name) == std::string::npos || !done.insert(file).second) continue;
       const fs::path canonical = fs::canonical(file, error);
-      if (error || !allowed(canonical) || !fs::is_regular_file(canonical, error)) continue;
+      const bool is_beside = is_within(canonical, mesh.file.parent_path());  // also where the mesh is a link's target
+      if (error || !(is_beside || allowed(canonical)) || !fs::is_regular_file(canonical, error)) continue;
       files.push_back({canonical, (fs::path(mesh.to).parent_path() / name).string(), {}});
       if (lower_case(file.extension().string()) == ".mtl") open.push_back(canonical);
     }

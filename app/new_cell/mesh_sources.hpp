@@ -14,7 +14,8 @@ namespace cellmirror::app {
 class MeshSources final : public FileFinder {
  public:
   // `urdf`: canonical path; `folder`: of the URDF in the cell folder, "robots/NAME".
-  MeshSources(const std::filesystem::path& urdf, std::string folder);
+  // `named_folder`: canonical, where the user named the URDF; other than its parent where the URDF is a link.
+  MeshSources(const std::filesystem::path& urdf, std::string folder, const std::filesystem::path& named_folder = {});
 
   [[nodiscard]] Result<std::filesystem::path> find(FileUse use, std::string_view name) const override;
   // Remembers the file for the copy.
@@ -35,10 +36,11 @@ class MeshSources final : public FileFinder {
   [[nodiscard]] Result<Found> resolve(const std::string& name) const;
   [[nodiscard]] Result<Found> in_package(const std::string& name) const;
   [[nodiscard]] Result<Found> as_path(const std::string& name) const;
+  [[nodiscard]] Result<std::filesystem::path> from_folders(const std::string& text) const;
   [[nodiscard]] bool allowed(const std::filesystem::path& file) const;
   void add_companions(const Found& mesh, std::vector<PlannedFile>& files) const;
 
-  std::filesystem::path urdf_folder_;
+  std::vector<std::filesystem::path> urdf_folders_;  // searched in this order
   std::string folder_;
   std::vector<std::filesystem::path> roots_;                 // folders that files may be taken from, canonical
   std::vector<std::filesystem::path> packages_;              // folders that hold packages, canonical

@@ -88,7 +88,8 @@ std::optional<RobotSource> read_robot_source(const NewCellRequest& request, Diag
   }
   std::string stem = plain_file_name(fs::path(request.urdf).stem().string());
   const std::string folder = "robots/" + stem;
-  MeshSources meshes(urdf, folder);
+  const fs::path named_folder = fs::canonical(fs::absolute(request.urdf, error).parent_path(), error);
+  MeshSources meshes(urdf, folder, named_folder);
   const std::size_t errors_before = diagnostics.errors();
   const auto component = parse_urdf(*text, request.urdf.string(), urdf, meshes, diagnostics);
   if (!component || diagnostics.errors() != errors_before) return std::nullopt;

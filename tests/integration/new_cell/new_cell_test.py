@@ -39,7 +39,8 @@ def box_mesh():
 
 def urdf(mesh=None, name="little", joints=1, origin=""):
     """A chain of `joints` joints; the root link has a mesh."""
-    body = f'<visual><geometry><mesh filename="{mesh}"/></geometry></visual>' if mesh is not None else ""
+    shape = f'<geometry><mesh filename="{mesh}"/></geometry>'
+    body = f"<visual>{shape}</visual><collision>{shape}</collision>" if mesh is not None else ""
     text = f'<?xml version="1.0"?>\n<robot name="{name}">\n<link name="foot"/>\n<link name="link_0">{body}</link>\n'
     text += f'<joint name="mount" type="fixed"><parent link="foot"/><child link="link_0"/>{origin}</joint>\n'
     for i in range(1, joints + 1):
@@ -214,13 +215,30 @@ class Meshes(Base):
         mesh = next(cell.rglob("*.stl"))
         self.assertRegex(str(mesh.relative_to(cell)), r"^[\w./-]+$")
 
+    def test_links_below_what_was_named_are_followed(self):
+        mesh = self.write("elsewhere/a.stl", box_mesh())
+        for folder in ("r/meshes", "arm_description/meshes"):
+            (self.folder / folder).mkdir(parents=True)
+            os.symlink(mesh, self.folder / folder / "linked.stl")
+        for name in ("meshes/linked.stl", "package://arm_description/meshes/linked.stl"):
+            with self.subTest(mesh=name):
+                cell, _ = self.make("--urdf", self.write("r/little.urdf", urdf(name)))
+                copy = next(cell.rglob("*.stl"))
+                self.assertFalse(copy.is_symlink())
+                self.assertEqual(self.check(cell).stderr, "")
+                shutil.rmtree(cell)
+
+    def test_meshes_beside_a_link_to_the_urdf_are_found(self):
+        source = self.write("build/little.urdf", urdf("meshes/a.stl"))
+        self.write("r/meshes/a.stl", box_mesh())
+        os.symlink(source, self.folder / "r/little.urdf")
+        cell, _ = self.make("--urdf", self.folder / "r/little.urdf")
+        self.assertEqual(len(list(cell.rglob("*.stl"))), 1)
+
     def test_outside_of_everything_known_is_refused(self):
         self.write("elsewhere/a.stl", box_mesh())
-        self.write("r/linked.stl", b"")
-        (self.folder / "r/linked.stl").unlink()
-        os.symlink(self.folder / "elsewhere/a.stl", self.folder / "r/linked.stl")
         for mesh in ("../elsewhere/a.stl", f"{self.folder}/elsewhere/a.stl", f"file://{self.folder}/elsewhere/a.stl",
-                     "linked.stl", "package://../elsewhere/a.stl", "package://elsewhere/../elsewhere/a.stl",
+                     "package://../elsewhere/a.stl", "package://elsewhere/../elsewhere/a.stl",
                      "/etc/passwd", "http://example.org/a.stl", "", "."):
             with self.subTest(mesh=mesh):
                 source = self.write("r/little.urdf", urdf(mesh))
@@ -282,7 +300,7 @@ class Refuses(Base):
         self.refused("mine", "--urdf", ARM, said="no folder can be made")
 
     def test_hostile_names_in_a_urdf_reach_no_shell(self):
-        cell, _ = self.make("--urdf", self.write("r/little.urdf", urdf(name="$(touch${IFS}pwned)")))
+        cell, _ = self.make("--urdf", self.write("r/little.urdf", urdf(name="$(touch$IFS$9pwned)")))
         self.check(cell)
         for line in (cell / "README.md").read_text().splitlines():
             if line.startswith("sim_robot"):
