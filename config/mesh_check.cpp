@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config/mesh_message/stl_text.hpp"
 #include "rt_core/base/text.hpp"
 #include "rt_core/geometry/mesh_repair/mesh_repair.hpp"
 
@@ -16,33 +17,21 @@ namespace cellmirror {
 
 namespace {
 
-constexpr std::size_t kStlHeader = 84;
-constexpr std::size_t kStlTriangle = 50;
-
-std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 4; i-- > 0;) value = (value << 8U) | static_cast<unsigned char>(bytes[at + i]);
-  return value;
-}
-
-// Binary STL is distinguished from ASCII by its size alone: files of both kinds begin with "solid".
 Result<void> check_stl(std::string_view bytes) {
-  const bool looks_ascii = bytes.starts_with("solid");
-  if (bytes.size() >= kStlHeader) {
-    const std::uint32_t count = little_endian(bytes, kStlHeader - 4);
-    const std::size_t wanted = kStlHeader + kStlTriangle * std::size_t{count};
-    if (bytes.size() == wanted && count > geometry::kMostTriangles) {
-      return fail(fmt::format("it has {} triangles, more than {}", count, geometry::kMostTriangles), "reduce the mesh");
-    }
-    if (bytes.size() == wanted) return {};
-    if (!looks_ascii) {
-      return fail(
-          fmt::format("it is not an STL file: {} triangles need {} bytes, but it has {}", count, wanted, bytes.size()),
-          "export it again");
-    }
+  const auto count = stl_triangles(bytes);
+  if (stl_has_size_of_binary(bytes)) {
+    if (*count <= geometry::kMostTriangles) return {};
+    return fail(fmt::format("it has {} triangles, more than {}", *count, geometry::kMostTriangles), "reduce the mesh");
   }
-  if (!looks_ascii) return fail("it is not an STL file");
-  if (bytes.find("facet") == std::string_view::npos) return fail("it has no facets");
+  if (stl_text_begin(bytes) == std::string_view::npos) {
+    if (!count) return fail("it is not an STL file");
+    return fail(fmt::format("it is not an STL file: {} triangles need {} bytes, but it has {}", *count,
+                            kStlHeader + kStlTriangle * std::size_t{*count}, bytes.size()),
+                "export it again");
+  }
+  const auto plain = plain_stl_text(bytes);
+  if ((plain ? std::string_view(*plain) : bytes).find("facet") == std::string_view::npos)
+    return fail("it has no facets");
   return {};
 }
 

@@ -17,6 +17,7 @@
 #include <memory>
 #include <utility>
 
+#include "config/mesh_message/stl_text.hpp"
 #include "config/mesh_reader/mesh_scene.hpp"
 #include "rt_core/base/text.hpp"
 
@@ -104,7 +105,10 @@ void keep_only(Assimp::Importer& importer, std::string_view name) {
 
 }  // namespace
 
-Result<ScenePolygons> import_mesh(const MeshRequest& request) {
+Result<ScenePolygons> import_mesh(const MeshRequest& given) {
+  MeshRequest request = given;
+  const auto plain = given.extension == ".stl" ? plain_stl_text(given.bytes) : std::nullopt;
+  if (plain) request.bytes = *plain;
   const auto* const format = std::ranges::find(kFormats, request.extension, &Format::extension);
   if (format == kFormats.end()) return fail("its kind is unknown");
   Assimp::Importer importer;
@@ -115,7 +119,11 @@ Result<ScenePolygons> import_mesh(const MeshRequest& request) {
   // As in ROS: coordinates as in the file, regardless of up_axis; its unit applies.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  const aiScene* scene = importer.ReadFile(name, aiProcess_ValidateDataStructure);
+  // Cameras and lights are not needed, and what is wrong with them must not refuse the mesh: they go before the check.
+  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_CAMERAS | aiComponent_LIGHTS);
+  const aiScene* scene = importer.ReadFile(name, 0);
+  if (scene != nullptr) scene = importer.ApplyPostProcessing(aiProcess_RemoveComponent);
+  if (scene != nullptr) scene = importer.ApplyPostProcessing(aiProcess_ValidateDataStructure);
   if (const std::exception_ptr& thrown = importer.GetException(); thrown) {
     try {
       std::rethrow_exception(thrown);

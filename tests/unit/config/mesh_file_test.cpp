@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -44,6 +45,29 @@ TEST(MeshFile, reads_stl_in_both_kinds) {
   expect_tetrahedron(parse(tetra_stl(), ".stl"));
   expect_tetrahedron(parse(tetra_stl("solid, says the header of this binary file"), ".stl"));
   expect_tetrahedron(parse(tetra_ascii_stl(), ".stl"));
+}
+
+TEST(MeshFile, reads_stl_text_behind_a_mark_and_blanks_and_in_capitals) {
+  std::string capitals = tetra_ascii_stl();
+  std::ranges::transform(capitals, capitals.begin(), [](char c) { return static_cast<char>(std::toupper(c)); });
+  expect_tetrahedron(parse(" \r\n" + tetra_ascii_stl(), ".stl"));
+  expect_tetrahedron(parse("\xEF\xBB\xBF" + tetra_ascii_stl(), ".stl"));
+  expect_tetrahedron(parse("\xEF\xBB\xBF\n" + capitals, ".stl"));
+  expect_tetrahedron(parse("solid" + capitals.substr(5), ".stl"));
+  expect_tetrahedron(parse(tetra_stl(" SOLID, says the header of this binary file"), ".stl"));
+  EXPECT_THAT(refusal("SOLID of nothing\n", ".stl"), testing::HasSubstr("it has no facets"));
+}
+
+TEST(MeshFile, reads_a_dae_whose_cameras_have_one_name) {
+  std::string dae = tetra_dae("Z_UP");
+  const std::string lens =
+      "<optics><technique_common><perspective><yfov>30</yfov><znear>0.1</znear><zfar>10</zfar></perspective>"
+      "</technique_common></optics></camera>";
+  dae.insert(dae.find("<library_visual_scenes"),
+             "<library_cameras><camera id=\"c1\" name=\"Camera\">" + lens + "</library_cameras>");
+  const std::string node = "<node id=\"Camera\" name=\"Camera\"><instance_camera url=\"#c1\"/></node>";
+  dae.insert(dae.find("</visual_scene>"), node + node);
+  expect_tetrahedron(parse(dae, ".dae"), 0.5);
 }
 
 TEST(MeshFile, reads_ply) { expect_tetrahedron(parse(kTetraPly, ".ply")); }
