@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
@@ -19,14 +20,38 @@ using geometry::TriangleMesh;
 
 namespace {
 
+Eigen::Vector3d extent_of(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& vertex : mesh.vertices) box.extend(vertex);
+  return box.isEmpty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : Eigen::Vector3d(box.sizes());
+}
+
+// Robots and tools often have mirrored parts, which are inside out by accident; a room is larger in each direction.
+bool may_be_a_room(const TriangleMesh& mesh) {
+  constexpr double kSmallest = 1.0;  // m
+  return extent_of(mesh).minCoeff() >= kSmallest;
+}
+
 void report_findings(const TriangleMesh& mesh, const MeshFindings& findings, const Place& place,
                      Diagnostics& diagnostics) {
   std::string all;
   for (const std::string& repair : findings.repairs()) all += (all.empty() ? "" : ", ") + repair;
   if (all.empty()) return;
   const bool lost = findings.lost_lines > 0;
-  diagnostics.add({lost ? Severity::warning : Severity::note, place, fmt::format("the mesh {}: {}", mesh.name, all),
-                   lost ? "repair it in the program that made it" : "it was repaired while reading"});
+  const bool filled = findings.inside_out_shells > 0 && may_be_a_room(mesh);
+  const char* remedy = lost     ? "repair it in the program that made it"
+                       : filled ? "its inside is solid now: where it is a room, export its walls with a thickness"
+                                : "it was repaired while reading";
+  diagnostics.add({lost || filled ? Severity::warning : Severity::note, place,
+                   fmt::format("the mesh {}: {}", mesh.name, all), remedy});
+}
+
+void report_suspected_unit(const TriangleMesh& mesh, const Place& place, Diagnostics& diagnostics) {
+  constexpr double kLargest = 100.0;  // m; a part of 0.1 m that was drawn in millimetres
+  const double size = extent_of(mesh).maxCoeff();
+  if (size < kLargest) return;
+  diagnostics.add({Severity::warning, place, fmt::format("the mesh {} is {:.0f} m long", mesh.name, size),
+                   "where it was drawn in millimetres, scale it by 0.001"});
 }
 
 void report_left_out(const TriangleMesh& mesh, const AppearanceRequest& looks, const Place& place,
@@ -82,6 +107,7 @@ Result<void> MeshLibrary::read(Entry& entry, const std::filesystem::path& file, 
   auto mesh = read_mesh_file(file, scale, findings, &looks);
   if (!mesh) return std::unexpected(mesh.error());
   report_findings(*mesh, findings, place, diagnostics);
+  report_suspected_unit(*mesh, place, diagnostics);
   report_left_out(*mesh, looks, place, diagnostics);
   out.mesh = std::make_shared<const TriangleMesh>(std::move(*mesh));
   out.look = std::move(looks.look);

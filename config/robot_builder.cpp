@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
 #include "rt_core/base/capacity.hpp"
@@ -11,6 +12,34 @@
 namespace cellmirror {
 
 namespace {
+
+ComponentNode* joint_named(Component& component, std::string_view name) {
+  const auto found =
+      std::ranges::find_if(component.nodes, [&](const ComponentNode& node) { return node.joint && node.name == name; });
+  return found == component.nodes.end() ? nullptr : &*found;
+}
+
+// A mimic of a mimic follows that one's joint: factors multiply, offsets add. What remains is one step.
+void resolve_chains_of_mimics(Component& component, Diagnostics& diagnostics) {
+  for (ComponentNode& node : component.nodes) {
+    if (!node.joint || !node.joint->mimic) continue;
+    Mimic mimic = *node.joint->mimic;
+    std::size_t steps = 0;
+    const ComponentNode* master = joint_named(component, mimic.joint);
+    while (master != nullptr && master->joint->mimic && steps <= component.nodes.size()) {
+      const Mimic& next = *master->joint->mimic;
+      mimic = {next.joint, mimic.multiplier * next.multiplier, mimic.multiplier * next.offset + mimic.offset};
+      master = joint_named(component, next.joint);
+      ++steps;
+    }
+    if (steps > component.nodes.size()) {
+      diagnostics.error(component.place(node),
+                        fmt::format("{} mimics itself by way of {}", node.name, printable(node.joint->mimic->joint)));
+      return;
+    }
+    node.joint->mimic = mimic;
+  }
+}
 
 void check_mimics(const Component& component, Diagnostics& diagnostics) {
   std::vector<std::string> masters;
@@ -23,7 +52,7 @@ void check_mimics(const Component& component, Diagnostics& diagnostics) {
     const std::string& name = node.joint->mimic->joint;
     const bool exists = std::ranges::find(component.nodes, name, &ComponentNode::name) != component.nodes.end();
     diagnostics.error(component.place(node),
-                      exists ? fmt::format("{} mimics {}, which is a mimic itself or not a joint", node.name, name)
+                      exists ? fmt::format("{} mimics {}, which is not a joint that moves by itself", node.name, name)
                              : fmt::format("{} mimics {}, which does not exist", node.name, printable(name)),
                       did_you_mean(name, masters));
   }
@@ -65,6 +94,7 @@ bool is_above(const Component& component, int above, int node) {
 
 void complete_robot(Component& component, const Place& place, Diagnostics& diagnostics) {
   RobotDefinition& robot = *component.robot;
+  resolve_chains_of_mimics(component, diagnostics);
   check_mimics(component, diagnostics);
   for (std::size_t i = 0; i < component.nodes.size(); ++i) {
     const auto& joint = component.nodes[i].joint;

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "config/urdf_model.hpp"
 #include "rt_core/base/text.hpp"
@@ -56,7 +58,8 @@ void read_limit(const XMLElement& element, const UrdfXml& xml, JointDefinition& 
   if (limited) {
     joint.min_position = xml.number(*limit, "lower", false).value_or(0.0);
     joint.max_position = xml.number(*limit, "upper", false).value_or(0.0);
-    if (joint.min_position >= joint.max_position && !joint.mimic)
+    // Equal: the joint has one position, as a machine has that was fixed by hand.
+    if (joint.min_position > joint.max_position && !joint.mimic)
       xml.error(*limit, fmt::format("lower {:g} is not below upper {:g}", joint.min_position, joint.max_position));
   }
   joint.max_velocity = xml.number(*limit, "velocity", !joint.mimic.has_value()).value_or(1.0);
@@ -69,6 +72,16 @@ void read_limit(const XMLElement& element, const UrdfXml& xml, JointDefinition& 
   joint.drive.max_effort = std::abs(xml.number(*limit, "effort", false).value_or(0.0));
 }
 
+// An axis of a robot turns a few times at most, while 90 or 180 is a usual limit in degrees.
+void warn_of_degrees(const XMLElement& element, const UrdfXml& xml, const JointDefinition& joint) {
+  constexpr double kFurthest = 40.0;  // rad; some axes of wrists turn by 6 turns
+  const double furthest = std::max(std::abs(joint.min_position), std::abs(joint.max_position));
+  if (joint.kind != JointKind::revolute || joint.mimic || furthest <= kFurthest || furthest >= kUnlimited) return;
+  xml.warning(element,
+              fmt::format("a limit of {:g} rad is {:.0f} turns", furthest, furthest / (2.0 * std::numbers::pi)),
+              "where it is in degrees, write it in radians");
+}
+
 }  // namespace
 
 std::optional<UrdfJoint> read_urdf_joint(const XMLElement& element, const UrdfXml& xml) {
@@ -79,7 +92,9 @@ std::optional<UrdfJoint> read_urdf_joint(const XMLElement& element, const UrdfXm
   out.child = read_end(element, "child", xml);
   out.X_PJ = xml.origin(element);
   const std::string type = xml.text(element, "type", true);
-  if (type != "fixed") {
+  if (type == "floating" || type == "planar") {
+    xml.warning(element, fmt::format("the joint is of type {}", type), "its child stays at its origin");
+  } else if (type != "fixed") {
     JointDefinition joint;
     if (type == "continuous") joint.kind = JointKind::continuous;
     if (type == "prismatic") joint.kind = JointKind::prismatic;
@@ -91,6 +106,7 @@ std::optional<UrdfJoint> read_urdf_joint(const XMLElement& element, const UrdfXm
     read_axis(element, xml, joint);
     read_mimic(element, xml, joint);
     if (known) read_limit(element, xml, joint);
+    if (known) warn_of_degrees(element, xml, joint);
     const bool zero_inside = joint.min_position <= 0.0 && joint.max_position >= 0.0;
     joint.start_position = zero_inside ? 0.0 : 0.5 * (joint.min_position + joint.max_position);
     if (const XMLElement* dynamics = element.FirstChildElement("dynamics")) {

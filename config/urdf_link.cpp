@@ -12,15 +12,22 @@ using tinyxml2::XMLElement;
 
 namespace {
 
+// A shape that is only drawn may be missing: the rest of the cell works.
+void report_shape(const XMLElement& shape, const UrdfXml& xml, bool collides, std::string what,
+                  std::string remedy = {}) {
+  if (collides) return xml.error(shape, std::move(what), std::move(remedy));
+  xml.warning(shape, std::move(what), "it is not drawn");
+}
+
 // Positive lengths of a shape.
-bool read_lengths(const XMLElement& shape, const UrdfXml& xml, std::initializer_list<const char*> attributes,
-                  Eigen::Vector3d& size) {
+bool read_lengths(const XMLElement& shape, const UrdfXml& xml, bool collides,
+                  std::initializer_list<const char*> attributes, Eigen::Vector3d& size) {
   Eigen::Index i = 0;
   for (const char* attribute : attributes) {
     const auto value = xml.number(shape, attribute, true);
     if (!value) return false;
     if (*value <= 0.0) {
-      xml.error(shape, fmt::format("{} is {:g}, but must be positive", attribute, *value));
+      report_shape(shape, xml, collides, fmt::format("{} is {:g}, but must be positive", attribute, *value));
       return false;
     }
     size[i++] = *value;
@@ -38,11 +45,11 @@ bool read_mesh(const XMLElement& shape, const UrdfXml& xml, const std::filesyste
   if (shape.Attribute("filename") == nullptr) return false;
   const auto found = files.find_mesh_of_urdf(path, name);
   if (!found) {
-    xml.error(shape, found.error().what, found.error().remedy);
+    report_shape(shape, xml, collides, found.error().what, found.error().remedy);
     return false;
   }
   if (const auto checked = check_mesh(*found); !checked) {
-    xml.error(shape, checked.error().what, checked.error().remedy);
+    report_shape(shape, xml, collides, checked.error().what, checked.error().remedy);
     return false;
   }
   geometry.mesh_file = found->string();
@@ -83,15 +90,15 @@ std::optional<Geometry> read_shape(const XMLElement& element, const UrdfXml& xml
     understood = size.has_value();
     if (size) geometry.size = {(*size)[0], (*size)[1], (*size)[2]};
     if (size && (geometry.size.array() <= 0.0).any()) {
-      xml.error(*shape, "an edge of the box is not positive");
+      report_shape(*shape, xml, collides, "an edge of the box is not positive");
       understood = false;
     }
   } else if (kind == "cylinder" || kind == "capsule") {
     geometry.shape = kind == "cylinder" ? Shape::cylinder : Shape::capsule;
-    understood = read_lengths(*shape, xml, {"radius", "length"}, geometry.size);
+    understood = read_lengths(*shape, xml, collides, {"radius", "length"}, geometry.size);
   } else if (kind == "sphere") {
     geometry.shape = Shape::sphere;
-    understood = read_lengths(*shape, xml, {"radius"}, geometry.size);
+    understood = read_lengths(*shape, xml, collides, {"radius"}, geometry.size);
   } else if (kind == "mesh") {
     understood = read_mesh(*shape, xml, path, files, collides, geometry);
   } else {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <unordered_map>
 
 #include "config/parse.hpp"
@@ -18,7 +19,7 @@ using tinyxml2::XMLElement;
 UrdfModel read_urdf_elements(const XMLElement& robot, const UrdfXml& xml, const std::filesystem::path& path,
                              const FileFinder& files) {
   UrdfModel model;
-  model.name = xml.name(robot, "name").value_or("robot");
+  model.name = xml.robot_name(robot);
   UrdfMaterials materials;
   constexpr std::size_t kMostMaterials = 10'000;
   for (const XMLElement* material = robot.FirstChildElement("material");
@@ -254,6 +255,49 @@ bool refuse_document_type(const tinyxml2::XMLDocument& document, const std::stri
   return false;
 }
 
+// Accepts values that xacro replaces: ${...}, and $(...) with one of its commands. Other $(...) may be in a file's
+// name.
+bool is_expression(std::string_view value) {
+  constexpr std::array<std::string_view, 8> kBegins{"${",      "$(arg ",    "$(find ", "$(env ",
+                                                    "$(eval ", "$(optenv ", "$(anon ", "$(dirname)"};
+  return std::ranges::any_of(kBegins,
+                             [&](std::string_view begin) { return value.find(begin) != std::string_view::npos; });
+}
+
+// The first place where a xacro file was not expanded.
+class XacroFinder : public tinyxml2::XMLVisitor {
+ public:
+  bool VisitEnter(const XMLElement& element, const tinyxml2::XMLAttribute* attribute) override {
+    if (std::string_view(element.Name()).starts_with("xacro:")) note(element, element.Name());
+    for (; attribute != nullptr; attribute = attribute->Next()) {
+      if (is_expression(attribute->Value())) note(element, attribute->Value());
+    }
+    return found_.empty();
+  }
+  [[nodiscard]] const std::string& found() const { return found_; }
+  [[nodiscard]] int line() const { return line_; }
+
+ private:
+  void note(const XMLElement& element, std::string_view what) {
+    if (!found_.empty()) return;
+    found_ = what;
+    line_ = element.GetLineNum();
+  }
+
+  std::string found_;
+  int line_ = 0;
+};
+
+bool refuse_xacro(const XMLElement& robot, const std::string& file, Diagnostics& diagnostics) {
+  XacroFinder finder;
+  robot.Accept(&finder);
+  if (finder.found().empty()) return false;
+  diagnostics.error({file, finder.line(), 0},
+                    fmt::format("this is a xacro file that was not expanded: {}", printable(finder.found())),
+                    "expand it first: xacro FILE > FILE.urdf");
+  return true;
+}
+
 // The root element, or nothing and what is wrong with the document.
 XMLElement* read_document(std::string_view text, const std::string& file, tinyxml2::XMLDocument& document,
                           Diagnostics& diagnostics) {
@@ -273,6 +317,7 @@ XMLElement* read_document(std::string_view text, const std::string& file, tinyxm
                       "a xacro file has to be expanded first: xacro FILE > FILE.urdf");
     return nullptr;
   }
+  if (refuse_xacro(*robot, file, diagnostics)) return nullptr;
   return robot;
 }
 
@@ -288,6 +333,20 @@ Component component_of(const XMLElement& robot, const std::string& file, const s
   return component;
 }
 
+// Nothing would ever be reported of such a robot, as if it touched nothing.
+void warn_where_nothing_collides(const Component& component, const XMLElement& robot, Diagnostics& diagnostics) {
+  if (!component.robot || !diagnostics.ok()) return;
+  const bool collides = std::ranges::any_of(component.nodes, [](const ComponentNode& node) {
+    return std::ranges::any_of(node.geometry, &Geometry::collides);
+  });
+  if (collides) return;
+  diagnostics.add({Severity::warning,
+                   {component.file, robot.GetLineNum(), 0},
+                   fmt::format("no link of {} has a shape that collides: COLLISIONS OF THIS ROBOT ARE NOT FOUND",
+                               component.robot->id),
+                   "give its links <collision> elements"});
+}
+
 }  // namespace
 
 std::optional<Component> parse_urdf(std::string_view text, const std::string& file, const std::filesystem::path& path,
@@ -295,7 +354,9 @@ std::optional<Component> parse_urdf(std::string_view text, const std::string& fi
   tinyxml2::XMLDocument document;
   const XMLElement* robot = read_document(text, file, document, diagnostics);
   if (robot == nullptr) return std::nullopt;
-  return component_of(*robot, file, path, files, diagnostics);
+  Component component = component_of(*robot, file, path, files, diagnostics);
+  warn_where_nothing_collides(component, *robot, diagnostics);
+  return component;
 }
 
 std::optional<Component> parse_urdf_between(std::string_view text, const std::string& file, std::string_view base,

@@ -16,6 +16,9 @@ std::string about(const tinyxml2::XMLElement& element, std::string message) {
   return fmt::format("<{}>: {}", printable(element.Name(), 40), message);
 }
 
+// Accepts the characters that a name in a dotted path may have.
+bool is_plain(char c) { return c > ' ' && c < 0x7F && c != '.' && c != ';' && c != '#' && c != '"' && c != '\''; }
+
 }  // namespace
 
 void UrdfXml::error(const tinyxml2::XMLElement& element, std::string message, std::string remedy) const {
@@ -35,12 +38,23 @@ std::string UrdfXml::text(const tinyxml2::XMLElement& element, const char* attri
 std::optional<std::string> UrdfXml::name(const tinyxml2::XMLElement& element, const char* attribute) const {
   const std::string value = text(element, attribute, true);
   if (element.Attribute(attribute) == nullptr) return std::nullopt;
-  const bool plain = std::ranges::all_of(
-      value, [](char c) { return c > ' ' && c < 0x7F && c != '.' && c != ';' && c != '#' && c != '"' && c != '\''; });
+  const bool plain = std::ranges::all_of(value, is_plain);
   if (!value.empty() && value.size() <= kMaxNameLength && plain) return value;
   error(element, fmt::format("{} \"{}\" is not a valid name in a dotted path", attribute, printable(value)),
         fmt::format("rename it: 1 to {} characters, without blanks, dots, quotes, ; and #", kMaxNameLength));
   return std::nullopt;
+}
+
+std::string UrdfXml::robot_name(const tinyxml2::XMLElement& robot) const {
+  const std::string given = text(robot, "name", true);
+  if (robot.Attribute("name") == nullptr) return "robot";
+  std::string plain;
+  for (const char c : given.substr(0, kMaxNameLength)) plain += is_plain(c) ? c : '_';
+  if (plain.empty()) plain = "robot";
+  if (plain != given)
+    warning(robot, fmt::format("the name \"{}\" cannot be written in commands", printable(given)),
+            fmt::format("the robot is called {}", plain));
+  return plain;
 }
 
 std::optional<double> UrdfXml::number(const tinyxml2::XMLElement& element, const char* attribute, bool required) const {
@@ -78,10 +92,29 @@ Eigen::Vector3d UrdfXml::vector3(const tinyxml2::XMLElement& element, const char
   return values ? Eigen::Vector3d((*values)[0], (*values)[1], (*values)[2]) : fallback;
 }
 
+// URDF 1.1.
+Pose UrdfXml::turned_pose(const tinyxml2::XMLElement& origin, const Eigen::Vector3d& xyz) const {
+  Pose pose = Pose::Identity();
+  pose.translation() = xyz;
+  if (origin.Attribute("rpy") != nullptr) error(origin, "there are rpy and quat_xyzw", "use one of them");
+  const auto numbers_of = numbers(origin, "quat_xyzw", 4, true);
+  if (!numbers_of) return pose;
+  const auto& q = *numbers_of;
+  const Eigen::Quaterniond turn(q[3], q[0], q[1], q[2]);
+  constexpr double kShortest = 1e-6;
+  if (turn.norm() < kShortest) {
+    error(origin, "quat_xyzw has length zero");
+    return pose;
+  }
+  pose.linear() = turn.normalized().toRotationMatrix();
+  return pose;
+}
+
 Pose UrdfXml::origin(const tinyxml2::XMLElement& parent) const {
   const tinyxml2::XMLElement* origin = parent.FirstChildElement("origin");
   if (origin == nullptr) return Pose::Identity();
   const Eigen::Vector3d xyz = vector3(*origin, "xyz", Eigen::Vector3d::Zero());
+  if (origin->Attribute("quat_xyzw") != nullptr) return turned_pose(*origin, xyz);
   const Eigen::Vector3d rpy = vector3(*origin, "rpy", Eigen::Vector3d::Zero());
   return pose_from_xyz_rpy(xyz, rpy);
 }

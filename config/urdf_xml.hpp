@@ -25,6 +25,8 @@ class UrdfXml {
   [[nodiscard]] std::string text(const tinyxml2::XMLElement& element, const char* attribute, bool required) const;
   // The same as a name of ours: without blanks and dots, at most kMaxNameLength.
   [[nodiscard]] std::optional<std::string> name(const tinyxml2::XMLElement& element, const char* attribute) const;
+  // The name of <robot>, or a similar one that may stand in a path, with a warning.
+  [[nodiscard]] std::string robot_name(const tinyxml2::XMLElement& robot) const;
   [[nodiscard]] std::optional<double> number(const tinyxml2::XMLElement& element, const char* attribute,
                                              bool required) const;
   // `count` numbers separated by blanks.
@@ -39,6 +41,8 @@ class UrdfXml {
   [[nodiscard]] Diagnostics& diagnostics() const { return *diagnostics_; }
 
  private:
+  [[nodiscard]] Pose turned_pose(const tinyxml2::XMLElement& origin, const Eigen::Vector3d& xyz) const;
+
   std::string file_;
   Diagnostics* diagnostics_;
 };

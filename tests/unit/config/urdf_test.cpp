@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <urdf_model/model.h>
@@ -67,6 +68,82 @@ TEST(Urdf, mimicJointsFollowAndAreNotCommanded) {
   EXPECT_EQ(sut.component->nodes[3].joint->mimic->multiplier, 0.5);
 }
 
+// c = 2 b + 0.3 and b = -a + 0.1, so that c = -2 a + 0.5.
+TEST(Urdf, aMimicOfAMimicFollowsItsJoint) {
+  const ParsedRobot sut =
+      parse("<link name=\"l0\"/><link name=\"l1\"/><link name=\"l2\"/><link name=\"l3\"/>" +
+            joint("a", "l0", "l1", "revolute", kJointLimit) +
+            joint("c", "l1", "l2", "revolute", kJointLimit + "<mimic joint=\"b\" multiplier=\"2\" offset=\"0.3\"/>") +
+            joint("b", "l2", "l3", "revolute", kJointLimit + "<mimic joint=\"a\" multiplier=\"-1\" offset=\"0.1\"/>"));
+  ASSERT_TRUE(sut.diagnostics.ok()) << sut.diagnostics.text();
+  EXPECT_EQ(sut.component->robot->joints.size(), 1U);
+  for (const ComponentNode& node : sut.component->nodes) {
+    if (node.name != "c") continue;
+    EXPECT_EQ(node.joint->mimic->joint, "a");
+    EXPECT_DOUBLE_EQ(node.joint->mimic->multiplier, -2);
+    EXPECT_DOUBLE_EQ(node.joint->mimic->offset, 0.5);
+  }
+}
+
+TEST(Urdf, aQuaternionTurnsAnOrigin) {
+  const ParsedRobot sut = parse("<link name=\"a\"/><link name=\"b\"/>" +
+                                joint("x", "a", "b", "fixed", "<origin xyz=\"0 0 1\" quat_xyzw=\"0 0 1 1\"/>"));
+  ASSERT_TRUE(sut.diagnostics.ok()) << sut.diagnostics.text();
+  const Pose& pose = sut.component->nodes[1].X_PF;
+  EXPECT_TRUE((pose.linear() * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY(), 1e-12)) << pose.matrix();
+  EXPECT_EQ(pose.translation(), Eigen::Vector3d::UnitZ());
+}
+
+TEST(Urdf, aJointMayHaveOnePosition) {
+  const ParsedRobot sut =
+      parse("<link name=\"a\"/><link name=\"b\"/>" +
+            joint("x", "a", "b", "prismatic",
+                  "<axis xyz=\"0 0 1\"/><limit lower=\"0.2\" upper=\"0.2\" velocity=\"1\" effort=\"1\"/>"));
+  ASSERT_TRUE(sut.diagnostics.ok()) << sut.diagnostics.text();
+  EXPECT_EQ(sut.component->robot->joints.size(), 1U);
+  EXPECT_EQ(sut.component->robot->parameters.start_position[0], 0.2);
+}
+
+TEST(Urdf, aFloatingJointStaysAtItsOriginWithAWarning) {
+  const ParsedRobot sut = parse("<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" +
+                                joint("x", "a", "b", "floating") + joint("y", "b", "c", "revolute", kJointLimit));
+  ASSERT_TRUE(sut.diagnostics.ok()) << sut.diagnostics.text();
+  EXPECT_THAT(sut.diagnostics.text(), HasSubstr("of type floating; its child stays at its origin"));
+  EXPECT_EQ(sut.component->robot->joints.size(), 1U);
+}
+
+TEST(Urdf, aRobotWhoseNameNoCommandCanWriteGetsASimilarOne) {
+  Diagnostics diagnostics;
+  const auto sut = parse_urdf("<robot name=\"My Robot v1.2\"><link name=\"a\"/><link name=\"b\"/>" +
+                                  joint("x", "a", "b", "revolute", kJointLimit) + "</robot>",
+                              "r.urdf", "/r.urdf", AnyFile(), diagnostics);
+  ASSERT_TRUE(diagnostics.ok()) << diagnostics.text();
+  EXPECT_EQ(sut->robot->id, "My_Robot_v1_2");
+  EXPECT_THAT(diagnostics.text(), HasSubstr("the robot is called My_Robot_v1_2"));
+}
+
+TEST(Urdf, whatIsOnlyDrawnAndMissingIsAWarning) {
+  const ParsedRobot sut = parse(
+      "<link name=\"a\"><visual><geometry><box size=\"0 0 0\"/></geometry></visual>"
+      "<visual><geometry><sphere radius=\"0\"/></geometry></visual>"
+      "<collision><geometry><box size=\"1 1 1\"/></geometry></collision></link><link name=\"b\"/>" +
+      joint("x", "a", "b", "revolute", kJointLimit));
+  ASSERT_TRUE(sut.diagnostics.ok()) << sut.diagnostics.text();
+  EXPECT_THAT(sut.diagnostics.text(), HasSubstr("an edge of the box is not positive; it is not drawn"));
+  EXPECT_THAT(sut.diagnostics.text(), HasSubstr("radius is 0, but must be positive; it is not drawn"));
+  EXPECT_THAT(sut.diagnostics.text(), testing::Not(HasSubstr("COLLISIONS")));
+  EXPECT_EQ(sut.component->nodes[0].geometry.size(), 1U);
+}
+
+TEST(Urdf, aRobotOfWhichNothingCollidesSaysSoLoudly) {
+  const ParsedRobot sut = parse(
+      "<link name=\"a\"><visual><geometry><box size=\"1 1 1\"/></geometry></visual></link>"
+      "<link name=\"b\"/>" +
+      joint("x", "a", "b", "revolute", kJointLimit));
+  ASSERT_TRUE(sut.diagnostics.ok()) << sut.diagnostics.text();
+  EXPECT_THAT(sut.diagnostics.text(), HasSubstr("COLLISIONS OF THIS ROBOT ARE NOT FOUND"));
+}
+
 struct Fault {
   const char* name;
   std::string text;
@@ -102,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"limitsTurnedRound",
               "<link name=\"a\"/><link name=\"b\"/>" +
                   joint("x", "a", "b", "revolute", "<limit lower=\"1\" upper=\"-1\" velocity=\"1\" effort=\"1\"/>"),
-              "is not below"},
+              "lower 1 is not below upper -1"},
         Fault{"notANumber",
               "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "fixed", "<origin xyz=\"0 nan 0\"/>"),
               "not a number"},
@@ -113,7 +190,22 @@ INSTANTIATE_TEST_SUITE_P(
               "<link name=\"a\"/><link name=\"b\"/>" +
                   joint("x", "a", "b", "revolute", "<axis xyz=\"0 0 0\"/>" + kJointLimit),
               "has length zero"},
-        Fault{"type", "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "floating"), "cannot be used"},
+        Fault{"type", "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "ball"), "cannot be used"},
+        Fault{"circleOfMimics",
+              "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>" +
+                  joint("x", "a", "b", "revolute", kJointLimit + "<mimic joint=\"y\"/>") +
+                  joint("y", "b", "c", "revolute", kJointLimit + "<mimic joint=\"x\"/>"),
+              "x mimics itself by way of y"},
+        Fault{"xacroElement", "<link name=\"a\"/><xacro:property name=\"p\" value=\"1\"/>", "xacro FILE > FILE.urdf"},
+        Fault{"xacroValue", "<link name=\"${p}tool\"/>", "not expanded: ${p}tool"},
+        Fault{"xacroCommand", "<link name=\"$(arg p)tool\"/>", "not expanded: $(arg p)tool"},
+        Fault{"turnedTwice",
+              "<link name=\"a\"/><link name=\"b\"/>" +
+                  joint("x", "a", "b", "fixed", "<origin rpy=\"0 0 0\" quat_xyzw=\"0 0 0 1\"/>"),
+              "use one of them"},
+        Fault{"noTurn",
+              "<link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b", "fixed", "<origin quat_xyzw=\"0 0 0 0\"/>"),
+              "quat_xyzw has length zero"},
         Fault{"mimicOfNothing",
               "<link name=\"a\"/><link name=\"b\"/>" +
                   joint("x", "a", "b", "revolute", kJointLimit + "<mimic joint=\"y\"/>"),
@@ -153,14 +245,40 @@ TEST(Urdf, longChainsDoNotExhaustTheStack) {
   EXPECT_EQ(sut.component->nodes.size(), 9'000U);
 }
 
+// A tetrahedron that faces inwards.
+std::string findings_of_hollow(double size) {
+  const TemporaryHome home;
+  home.write("room.obj", fmt::format("v 0 0 0\nv {0} 0 0\nv 0 {0} 0\nv 0 0 {0}\n"
+                                     "f 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n",
+                                     size));
+  const auto path = home.write("room.urdf",
+                               "<robot name=\"r\"><link name=\"a\"><collision><geometry><mesh filename=\"room.obj\"/>"
+                               "</geometry></collision></link></robot>");
+  Diagnostics diagnostics;
+  check_file(path, diagnostics);
+  return diagnostics.text();
+}
+
+TEST(UrdfMeshes, anInsideOutOneOfTheSizeOfARoomIsAWarning) {
+  EXPECT_THAT(findings_of_hollow(0.3), HasSubstr("note: the mesh room.obj: 1 shell was inside out"));
+  EXPECT_THAT(findings_of_hollow(3),
+              HasSubstr("warning: the mesh room.obj: 1 shell was inside out; its inside is solid"));
+}
+
+TEST(UrdfMeshes, oneOfHundredsOfMetresIsAWarning) {
+  EXPECT_THAT(findings_of_hollow(3), testing::Not(HasSubstr("millimetres")));
+  EXPECT_THAT(findings_of_hollow(300),
+              HasSubstr("warning: the mesh room.obj is 300 m long; where it was drawn in milli"));
+}
+
 TEST(UrdfMeshes, areFoundBesideTheFileAndInPackagesAndNowhereElse) {
   const TemporaryHome home;
   home.write("robots/arm/meshes/a.stl", tetra_stl());
   home.write("secret.stl", "solid");
   const auto check = [&](const std::string& mesh) {
     const auto path = home.write("robots/arm/urdf/arm.urdf",
-                                 "<robot name=\"r\"><link name=\"a\"><visual><geometry><mesh filename=\"" + mesh +
-                                     "\"/></geometry></visual></link></robot>");
+                                 "<robot name=\"r\"><link name=\"a\"><collision><geometry><mesh filename=\"" + mesh +
+                                     "\"/></geometry></collision></link></robot>");
     home.write("cell.toml", "");
     Diagnostics diagnostics;
     check_file(path, diagnostics);
