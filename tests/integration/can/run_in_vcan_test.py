@@ -3,10 +3,12 @@
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
-import gateway as g
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+import gateway as g  # noqa: E402
 
 SUPPORT = g.SOURCE / "tests" / "support"
 # Stand-ins for the guest kernels: the tests need no kernel, and no processor on which User-Mode Linux fails.
