@@ -139,7 +139,7 @@ class BadInput(unittest.TestCase):
         self.refused_robot(urdf(ends[0], joint("k", "b", "c", axis="0 0 0")), "robot.urdf:6", "the axis has length zero")
         self.refused_robot(urdf(ends[0], joint("k", "b", "c", axis="0 nan 1")), "robot.urdf:6")
         self.refused_robot(urdf(ends[0], joint("k", "b", "c", inside="")), "robot.urdf:6", "needs <limit>")
-        self.refused_robot(urdf(ends[0], joint("k", "b", "c", kind="floating")), "robot.urdf:6", "floating")
+        self.refused_robot(urdf(ends[0], joint("k", "b", "c", kind="ball")), "robot.urdf:6", "ball")
         self.refused_robot("no xml", "robot.urdf")
         self.refused_robot("", "robot.urdf")
 
