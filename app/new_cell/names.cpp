@@ -56,15 +56,6 @@ std::string toml_text(std::string_view text) {
   return out + '"';
 }
 
-std::string shell_word(std::string_view text) {
-  constexpr std::string_view kHarmless = "_-.,:=/@+";
-  const auto harmless = [&](char c) { return is_plain(c) || kHarmless.find(c) != std::string_view::npos; };
-  if (!text.empty() && std::all_of(text.begin(), text.end(), harmless)) return std::string(text);
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
 std::string number_text(double value) {
   std::string text = fmt::format("{}", value == 0.0 ? 0.0 : value);
   // TOML tells numbers from integers by the point or the exponent; keys for numbers take both.

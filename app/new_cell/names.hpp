@@ -13,8 +13,6 @@ namespace cellmirror::app {
 [[nodiscard]] std::string plain_file_name(std::string_view name);
 // A TOML basic string with its quotes; a byte that is part of no UTF-8 character becomes U+FFFD.
 [[nodiscard]] std::string toml_text(std::string_view text);
-// One word of a shell's command line, quoted where it has to be.
-[[nodiscard]] std::string shell_word(std::string_view text);
 // A number that reads back as itself.
 [[nodiscard]] std::string number_text(double value);
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/new_cell/names.hpp"
+#include "rt_core/base/shell_word.hpp"
 
 namespace cellmirror::app {
 

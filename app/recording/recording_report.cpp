@@ -10,6 +10,7 @@
 
 #include "app/recording/recorded_cell.hpp"
 #include "ipc/record/summary.hpp"
+#include "rt_core/base/shell_word.hpp"
 #include "rt_core/base/text.hpp"
 #include "rt_core/base/utc_text.hpp"
 
@@ -123,7 +124,8 @@ json cell_json(const mcap::Reader& reader) {
 
 std::string recover_command(const std::string& file) {
   const std::string_view stem = std::string_view(file).substr(0, file.size() - (file.ends_with(".mcap") ? 5 : 0));
-  return fmt::format("cellmirror recording recover {} -o {}-repaired.mcap", file, stem);
+  return fmt::format("cellmirror recording recover {} -o {}", shell_word(file),
+                     shell_word(fmt::format("{}-repaired.mcap", stem)));
 }
 
 std::string recording_info_text(const std::string& file, std::uint64_t bytes, const mcap::Reader& reader) {
@@ -205,6 +207,8 @@ Result<RecordingCheck> check_recording(const mcap::Source& source, const mcap::L
   auto scanned = mcap::scan(source, limits, nothing);
   if (!scanned) return std::unexpected(scanned.error());
   RecordingCheck out{*std::move(scanned), {}, source.size()};
+  // The summary of a joined file is that of its last recording.
+  if (out.scan.recordings > 1) return out;
   const auto summary = mcap::read_summary(source, limits);
   if (!summary) {
     out.summary_faults.add(source.size(), summary.error().what);

@@ -13,6 +13,7 @@
 #include "app/gateway/gateway.hpp"
 #include "app/playback/played_recording.hpp"
 #include "app/recording/recorded_cell.hpp"
+#include "app/recording/recording_report.hpp"
 #include "app/replay/verification.hpp"
 #include "app/subcommands/end_signals.hpp"
 #include "app/subcommands/resource_limits.hpp"
@@ -86,9 +87,8 @@ int play_recording(const ReplayGateway& options) {
   if (!reader.indexed())
     log_warning(
         "replay.file",
-        "{} was not ended in order ({}): it was read as a whole to be opened; cellmirror recording recover makes "
-        "one that is opened at once",
-        options.file, reader.why_not_indexed());
+        "{} was not ended in order ({}): it was read as a whole to be opened; write a file that opens at once: {}",
+        options.file, reader.why_not_indexed(), recover_command(options.file));
   // Of the user alone, for the cell and for all that a gateway writes.
   auto folder = TemporaryFolder::make();
   if (!folder) return refuse(folder.error().text());

@@ -123,6 +123,14 @@ bool RecordFinder::recording_at(std::uint64_t offset) const {
   return header.ends_at(end);
 }
 
+// Rejects most candidates without another read of the source.
+bool RecordFinder::fits(std::size_t i, std::uint64_t window_at) const {
+  constexpr std::size_t kHead = 1 + 8;
+  if (window_.size() - i < kHead) return true;
+  const auto length = Decoder(View(window_).subspan(i + 1, 8)).number<std::uint64_t>();
+  return length <= limits_.record_bytes && length <= source_.size() - (window_at + i);
+}
+
 std::optional<FoundRecord> RecordFinder::search(std::uint64_t from, std::uint64_t to, bool only_recordings) {
   to = std::min(to, source_.size());
   while (from < to) {
@@ -130,7 +138,8 @@ std::optional<FoundRecord> RecordFinder::search(std::uint64_t from, std::uint64_
     if (!source_.read(from, window_)) return std::nullopt;
     for (std::size_t i = 0; i < window_.size(); ++i) {
       if (window_[i] == std::byte{kMagic[0]} && recording_at(from + i)) return FoundRecord{from + i, true};
-      if (!only_recordings && searched_for(window_[i]) && record_at(from + i)) return FoundRecord{from + i, false};
+      if (only_recordings || !searched_for(window_[i]) || !fits(i, from)) continue;
+      if (record_at(from + i)) return FoundRecord{from + i, false};
     }
     from += window_.size();
   }

@@ -22,11 +22,12 @@ class RecordFinder {
   // The first that begins in [from, to): a chunk, a schema, a channel, an attachment, metadata, or a recording.
   std::optional<FoundRecord> next(std::uint64_t from, std::uint64_t to);
   std::optional<FoundRecord> next_recording(std::uint64_t from, std::uint64_t to);
-  [[nodiscard]] bool recording_at(std::uint64_t offset) const;
 
  private:
+  [[nodiscard]] bool recording_at(std::uint64_t offset) const;
   std::optional<FoundRecord> search(std::uint64_t from, std::uint64_t to, bool only_recordings);
   [[nodiscard]] bool record_at(std::uint64_t offset) const;
+  [[nodiscard]] bool fits(std::size_t i, std::uint64_t window_at) const;
 
   const Source& source_;
   Limits limits_;

@@ -2,6 +2,8 @@
 
 import csv
 import json
+import re
+import shlex
 import struct
 import subprocess
 import unittest
@@ -111,6 +113,23 @@ class Record(RecordingCase):
         self.start()
         self.record("a.mcap", "--topics", "/joint_states,/cellmirror/st*")
         self.assertEqual({topic["topic"] for topic in self.info("a.mcap")["topics"]}, {"/joint_states", "/cellmirror/status"})
+
+    def test_the_suggested_command_repairs_a_joined_recording(self):
+        self.start()
+        self.record("a.mcap", "--topics", "/joint_states")
+        joined = self.scratch.root / "night shift's.mcap"
+        joined.write_bytes(2 * (self.scratch.root / "a.mcap").read_bytes())
+        once = self.info("a.mcap")["messages"]
+        said = self.recording("check", str(joined), code=1)
+        self.assertIn("another recording begins here", said.stdout + said.stderr)
+        self.assertNotIn("CRC of the summary", said.stdout + said.stderr)
+        for text in (said.stderr, self.recording("info", str(joined)).stdout):
+            command = re.search(r"cellmirror (recording recover .*)$", text, re.MULTILINE)[1]
+            self.recording(*shlex.split(command)[1:])
+            repaired = self.scratch.root / "night shift's-repaired.mcap"
+            self.recording("check", str(repaired))
+            self.assertEqual(self.info(repaired.name)["messages"], 2 * once)
+            repaired.unlink()
 
     def test_ctrl_c_ends_it_and_the_file_is_whole(self):
         self.start()

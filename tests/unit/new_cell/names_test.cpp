@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "rt_core/base/shell_word.hpp"
+
 namespace cellmirror::app {
 namespace {
 
