@@ -13,7 +13,7 @@ namespace cellmirror {
 inline constexpr std::size_t kStlHeader = 84;    // bytes; the last four are the number of triangles
 inline constexpr std::size_t kStlTriangle = 50;  // bytes
 
-// Of a binary file, as its header has it; nothing where the file is shorter than a header.
+// The number of triangles in the header of a binary file; nothing if the file is shorter than a header.
 [[nodiscard]] inline std::optional<std::uint32_t> stl_triangles(std::string_view bytes) {
   if (bytes.size() < kStlHeader) return std::nullopt;
   std::uint32_t count = 0;
@@ -26,8 +26,7 @@ inline constexpr std::size_t kStlTriangle = 50;  // bytes
   return count && bytes.size() == kStlHeader + kStlTriangle * std::size_t{*count};
 }
 
-// Where the text begins: behind a byte order mark and blanks, with "solid" in letters of any case. npos: it is not
-// text.
+// The position of "solid", in letters of any case, behind a byte order mark and blanks; npos if the file is not text.
 [[nodiscard]] inline std::size_t stl_text_begin(std::string_view bytes) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
   constexpr std::string_view kSolid = "solid";
@@ -39,7 +38,8 @@ inline constexpr std::size_t kStlTriangle = 50;  // bytes
   return begin;
 }
 
-// The text as readers expect it: from "solid" on, in small letters; nothing where it is so already, or is not text.
+// The text from "solid" on in small letters, which is all that assimp reads; nothing if assimp reads `bytes` as they
+// are.
 [[nodiscard]] inline std::optional<std::string> plain_stl_text(std::string_view bytes) {
   const std::size_t begin = stl_text_begin(bytes);
   if (begin == std::string_view::npos || stl_has_size_of_binary(bytes) ||

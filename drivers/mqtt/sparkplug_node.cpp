@@ -210,12 +210,12 @@ std::optional<Outgoing> SparkplugNode::next_of(const std::string& name, Device& 
 // In turn, so that none waits for ever behind others that change all the time. Devices that are gone come first: the id
 // of a new one may differ from theirs by case only, and a host would take their DDEATH for its own.
 std::optional<Outgoing> SparkplugNode::next_of_devices(std::int64_t time_ms) {
-  const auto gone = std::ranges::find_if(devices_, [](const auto& entry) { return entry.second.gone; });
-  if (gone != devices_.end()) {
+  const auto is_gone = [](const auto& entry) { return entry.second.gone; };
+  for (auto gone = std::ranges::find_if(devices_, is_gone); gone != devices_.end();
+       gone = std::ranges::find_if(devices_, is_gone)) {
     auto death = next_of(gone->first, gone->second, time_ms);
     devices_.erase(gone);
     if (death) return death;
-    return next_of_devices(time_ms);
   }
   auto at = devices_.upper_bound(last_device_);
   for (std::size_t looked = 0; looked < devices_.size(); ++looked, ++at) {

@@ -18,8 +18,8 @@ class RobotSlot;
 
 using CoupledJoints = std::array<CoupledJoint, kMaxJointsPerRobot>;
 
-// Of one slave. A coupled joint follows to the master's value within the slave's own velocity, acceleration and range
-// (rt_core/motion/pursuit.hpp); the slave's other joints stay free.
+// The coupling of one slave. A coupled joint follows the master's value within the slave's own velocity, acceleration
+// and range (rt_core/motion/pursuit.hpp); the slave's other joints stay free.
 struct Coupling {
   std::uint8_t master = 0;  // slots
   std::uint8_t slave = 0;

@@ -198,7 +198,7 @@ bool RobotSlot::follow_joint(const JointTickState* master, std::size_t joint, co
   GatedStep step{.joints = static_cast<JointSet>(1U << joint), .dt = dt};
   step.next[joint] = next;
   step.velocity[joint] = dt > 0.0 ? (next - present) / dt : 0.0;
-  // Where the limit was lowered during the motion, the joint brakes to it.
+  // The joint brakes to a limit that was lowered during the motion; the gate must not refuse these steps.
   step.fastest[joint] = std::max(limits.velocity, std::abs(before));
   if (gate_.step(step) != LimiterVerdict::passed) return false;
   const bool limited = master != nullptr && std::abs(master->position - next) > kLimitSlack;

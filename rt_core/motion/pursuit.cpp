@@ -39,7 +39,7 @@ double pursue(const PursuitStep& step, const PursuitLimits& limits) CELL_RT {
   const double way = target - step.present - target_velocity * step.dt;
   const double approach = std::copysign(to_stop_after(std::abs(way), limits.acceleration, step.dt), way);
   const double next = advance(step, limits, target_velocity + approach);
-  // What rounding leaves would be a velocity without end.
+  // A remainder from rounding would be published as a velocity.
   return std::abs(next - target) <= 1e-12 * std::max(1.0, std::abs(target)) ? target : next;
 }
 

@@ -84,22 +84,22 @@ def count_unittest(output: str, report: Report) -> bool:
     for number in range(len(reasons), counts.get("skipped", 0)):
         report.skip(f"case {number + 1}", "its reason shows with unittest's verbosity 2")
     failed = failures_of(output)
-    for name, detail in failed:
+    for _, name, detail in failed:
         report.fail(name, detail)
-    tests = {name.split(" ")[0] for name, _ in failed}
+    tests = {test for test, _, _ in failed}
     report.passed += max(0, int(ran[1]) - len(tests) - counts.get("skipped", 0))
     return True
 
 
-def failures_of(output: str) -> list[tuple[str, str]]:
-    """Name and traceback of each failed case or sub-test that unittest printed; 'setUpClass' and the like are cases."""
+def failures_of(output: str) -> list[tuple[str, str, str]]:
+    """Test with its class, name and traceback of each failed case or sub-test that unittest printed."""
     rule, line = "=" * 70, "-" * 70
     found = []
     for block in output.split(rule + "\n")[1:]:
-        head = re.match(r"(?:FAIL|ERROR): (\w+)(?: \([^)]*\))?(.*)\n", block)
+        head = re.match(r"(?:FAIL|ERROR): ((\w+)(?: \([^)]*\))?)(.*)\n", block)
         if head:
             text = block.split("\n" + line + "\nRan ")[0].replace(line + "\n", "")
-            found.append((" ".join([head[1], head[2].strip()]).strip(), tail(text, 40)))
+            found.append((head[1], f"{head[2]} {head[3].strip()}".strip(), tail(text, 40)))
     return found
 
 

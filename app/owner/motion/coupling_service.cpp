@@ -52,7 +52,7 @@ Result<void> CouplingService::send(std::string_view slave, const planning::Robot
                             .max_velocity = robot.parameters().max_velocity};
   for (std::size_t i = 0; i < robot.joint_count(); ++i) {
     const double acceleration = robot.parameters().max_acceleration[i];
-    // Where the component file gives none, as in a move.
+    // A move makes the same assumption for a component file without accelerations.
     coupling.max_acceleration[i] =
         acceleration > 0 ? acceleration : coupling.max_velocity[i] / motion::kDefaultRampSeconds;
   }

@@ -14,7 +14,7 @@ prepare_guest() {
   cache=$(readlink -f "$cache")
   exec 9>"$cache/lock"
   flock -w 400 9 || { reason="another preparation holds $cache/lock"; return 1; }
-  # What was unpacked by an earlier version of these files is unpacked again.
+  # A newer version of these files unpacks the kernels again.
   version=$(cat "$here/vcan/guest_kernels.sh" "$here/vcan/qemu_init.sh" | cksum)
   if [ "$(cat "$cache/$1/ready" 2>/dev/null)" != "$version" ] && ! "unpack_$1"; then
     reason="its kernel cannot be fetched (run apt-get update, check the network)"
@@ -26,9 +26,14 @@ prepare_guest() {
 
 # download PACKAGE: its file is unpacked into ./root.
 download() {
+  local folder
   timeout 300 apt-get -q download "$1" >apt.log 2>&1 || { cat apt.log >&2; return 1; }
   mkdir -p root
   dpkg-deb -x "$1"_*.deb root
+  # Packages of a merged /usr have their files below it.
+  for folder in bin lib; do
+    [ -e "root/$folder" ] || [ ! -d "root/usr/$folder" ] || ln -s "usr/$folder" "root/$folder"
+  done
 }
 
 # list_modules ROOT VERSION MODULE...: the files to load, in their order.

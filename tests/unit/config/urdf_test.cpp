@@ -295,6 +295,19 @@ TEST(UrdfMeshes, areFoundBesideTheFileAndInPackagesAndNowhereElse) {
   EXPECT_THAT(check("../meshes/missing.stl"), HasSubstr("does not exist"));
 }
 
+TEST(UrdfMeshes, oneThatIsOnlyDrawnMayBeMissing) {
+  const TemporaryHome home;
+  home.write("cell.toml", "");
+  const auto path = home.write("robots/arm.urdf",
+                               "<robot name=\"r\"><link name=\"a\"><visual><geometry><mesh filename=\"none.dae\"/>"
+                               "</geometry></visual></link></robot>");
+  Diagnostics diagnostics;
+  check_file(path, diagnostics);
+  EXPECT_TRUE(diagnostics.ok());
+  EXPECT_THAT(diagnostics.text(), HasSubstr("does not exist"));
+  EXPECT_THAT(diagnostics.text(), HasSubstr("it is not drawn"));
+}
+
 // --- against urdfdom, on the robots of the shared data
 // ------------------------------------------------------------------
 
